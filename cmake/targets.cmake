@@ -1,0 +1,86 @@
+# One target a top folder. Sources are found by name: x.cpp belongs to the library, x_test.cpp to its tests
+# (GoogleTest; every TEST is a CTest process of its own), x_bench.cpp to its benchmarks (Google Benchmark).
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+include(GoogleTest)
+
+add_library(splatscope_options INTERFACE)
+# -ffp-contract=off: the same bits from every build and every SIMD target.
+target_compile_options(splatscope_options INTERFACE -Wall -Wextra -Wconversion -ffp-contract=off)
+if(SPLATSCOPE_SANITIZE)
+  target_compile_options(splatscope_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+                                                     -fno-omit-frame-pointer)
+  target_link_options(splatscope_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# include/FOLDER/ holds a link to FOLDER alone, so a target finds only the headers of what it links.
+function(splatscope_headers folder target)
+  set(root ${CMAKE_BINARY_DIR}/include/${folder})
+  file(MAKE_DIRECTORY ${root})
+  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${root}/${folder} SYMBOLIC)
+  target_include_directories(${target} PUBLIC ${root})
+endfunction()
+
+function(splatscope_sources folder suffix variable)
+  file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.cpp)
+  if(suffix)
+    list(FILTER found INCLUDE REGEX "_${suffix}\\.cpp$")
+  else()
+    list(FILTER found EXCLUDE REGEX "_(test|bench|fuzz)\\.cpp$")
+  endif()
+  set(${variable} ${found} PARENT_SCOPE)
+endfunction()
+
+function(splatscope_library folder)
+  splatscope_sources(${folder} "" sources)
+  add_library(splatscope_${folder} STATIC ${sources})
+  target_link_libraries(splatscope_${folder} PUBLIC ${ARGN} PRIVATE splatscope_options)
+  splatscope_headers(${folder} splatscope_${folder})
+  if(EXISTS ${CMAKE_SOURCE_DIR}/${folder}/build.cmake)
+    include(${CMAKE_SOURCE_DIR}/${folder}/build.cmake)
+  endif()
+endfunction()
+
+function(splatscope_program folder)
+  splatscope_sources(${folder} "" sources)
+  add_executable(splatscope ${sources})
+  target_link_libraries(splatscope PRIVATE ${ARGN} splatscope_options)
+  splatscope_headers(${folder} splatscope)
+endfunction()
+
+function(splatscope_tests folder)
+  splatscope_sources(${folder} test sources)
+  if(sources)
+    add_executable(${folder}_tests ${sources})
+    target_link_libraries(${folder}_tests PRIVATE ${ARGN} splatscope_options GTest::gtest_main rapidcheck)
+    target_compile_definitions(${folder}_tests PRIVATE SPLATSCOPE_SOURCE="${CMAKE_SOURCE_DIR}"
+                                                       SPLATSCOPE_PROGRAM="$<TARGET_FILE:splatscope>")
+    gtest_discover_tests(${folder}_tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  endif()
+endfunction()
+
+function(splatscope_benchmarks folder)
+  splatscope_sources(${folder} bench sources)
+  if(sources)
+    add_executable(${folder}_benchmarks ${sources})
+    target_link_libraries(${folder}_benchmarks PRIVATE ${ARGN} splatscope_options benchmark::benchmark_main)
+  endif()
+endfunction()
+
+# Text files (programs, machines) become a table in the program: splatscope reads no file of its own at run time.
+# Writes NAME.cpp defining `std::span<const splatscope::EmbeddedFile> NAME()`.
+function(splatscope_embed target name)
+  set(generated ${CMAKE_BINARY_DIR}/embedded/${name}.cpp)
+  set(text "#include \"model/embedded_file.h\"\n\nnamespace splatscope {\nstd::span<const EmbeddedFile> ${name}() {\n  static constexpr EmbeddedFile files[] = {\n")
+  foreach(file ${ARGN})
+    set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(READ ${file} content)
+    get_filename_component(base ${file} NAME)
+    string(APPEND text "      {\"${base}\", R\"embedded(${content})embedded\"},\n")
+  endforeach()
+  string(APPEND text "  };\n  return files;\n}\n}  // namespace splatscope\n")
+  file(CONFIGURE OUTPUT ${generated} CONTENT "${text}" @ONLY)
+  target_sources(${target} PRIVATE ${generated})
+endfunction()

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+// What a GPU of 2002 is told: buffers, textures, programs, and a list of commands. The trace file is this
+// structure on disk. Nothing here knows a surfel.
+namespace splatscope {
+
+using Vec4 = std::array<float, 4>;
+
+enum class MemoryPlace : std::uint8_t { video, agp };
+
+enum class VertexFormat : std::uint8_t { float1, float2, float3, float4, d3dcolor, ubyte4, short2, short4 };
+
+struct VertexAttribute {
+  std::uint8_t input = 0;  // v0..v15
+  VertexFormat format = VertexFormat::float3;
+  std::uint16_t offset = 0;  // bytes from the start of a vertex
+};
+
+// Bytes of vertices or of 16-bit indices.
+struct Buffer {
+  MemoryPlace place = MemoryPlace::video;
+  std::vector<std::byte> bytes;
+};
+
+// One channel of 8-bit alpha (D3DFMT_A8), rows from v = 0, width*height texels. Sampled at the nearest texel,
+// clamped to the edge.
+struct Texture {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> texels;
+};
+
+struct ShaderText {
+  std::string name;  // "splat_ewa.vs"
+  std::string text;  // assembly, vs_1_1 or ps_1_x
+};
+
+enum class BlendFactor : std::uint8_t {
+  zero, one, src_color, inv_src_color, src_alpha, inv_src_alpha,
+  dst_alpha, inv_dst_alpha, dst_color, inv_dst_color, src_alpha_saturate
+};
+
+// Fixed-function state of a draw.
+struct DrawState {
+  bool depth_test = true;   // passes where depth <= stored depth
+  bool depth_write = true;
+  bool color_write = true;
+  bool blend = false;       // out = src*source_factor + dst*destination_factor
+  BlendFactor source_factor = BlendFactor::one;
+  BlendFactor destination_factor = BlendFactor::zero;
+};
+
+// Indexed triangle list. Indices into `programs`, `buffers`, `textures` of the trace.
+struct Draw {
+  std::uint32_t vertex_program = 0;
+  std::optional<std::uint32_t> pixel_program;  // absent: the interpolated diffuse colour
+  std::optional<std::uint32_t> texture;        // of stage 0
+  std::uint32_t vertex_buffer = 0;
+  std::uint32_t vertex_stride = 0;             // bytes
+  std::vector<VertexAttribute> attributes;
+  std::uint32_t base_vertex = 0;               // added to each index (D3D8 SetIndices)
+  std::uint32_t index_buffer = 0;
+  std::uint32_t first_index = 0;
+  std::uint32_t index_count = 0;               // a multiple of 3
+  std::vector<Vec4> constants;                 // c0, c1, ...: at most 96, the rest are 0
+  DrawState state;
+};
+
+struct Clear {
+  Vec4 color{};        // r g b a
+  float depth = 1.0f;  // 0..1
+};
+
+// The host reads the frame buffer over the bus, divides r, g and b by alpha (the summed weights; 0 stays 0), and
+// writes it back: per-pixel normalisation, Ren 2002, section 7.
+struct NormalizeOnHost {};
+
+using Command = std::variant<Clear, Draw, NormalizeOnHost>;
+
+// One frame of `width` x `height` pixels, at most 4096 each.
+struct Trace {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<Buffer> buffers;
+  std::vector<Texture> textures;
+  std::vector<ShaderText> programs;
+  std::vector<Command> commands;
+};
+
+}  // namespace splatscope

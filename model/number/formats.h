@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+namespace splatscope {
+
+// Arithmetic of the vertex unit: IEEE binary32, or what the NV20 does (docs: NV20 arithmetic).
+enum class Arithmetic : std::uint8_t { ieee, nv20 };
+
+// Frame buffer: 8 bits a channel with the hardware's rounding, or binary32 (for proofs against a reference).
+enum class FrameFormat : std::uint8_t { unorm8, float32 };
+
+// Interpolated colours as the pixel unit sees them, and its output to the blend unit.
+enum class ColorFormat : std::uint8_t { unorm8, float32 };
+
+enum class DepthFormat : std::uint8_t { z16, z24, float32 };
+
+// Every lossy step of the machine, each one switchable. The defaults are the machines of 2002.
+struct NumberFormats {
+  Arithmetic vertex_arithmetic = Arithmetic::ieee;
+  ColorFormat color = ColorFormat::unorm8;
+  FrameFormat frame = FrameFormat::unorm8;
+  DepthFormat depth = DepthFormat::z24;
+  int subpixel_bits = 4;  // of window x and y, 0 to 8: coverage is decided on this grid
+
+  bool operator==(const NumberFormats&) const = default;
+};
+
+}  // namespace splatscope

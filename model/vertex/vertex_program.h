@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "model/command/commands.h"
+#include "model/isa/program.h"
+#include "model/number/formats.h"
+
+namespace splatscope::vertex {
+
+inline constexpr int kBatch = 64;  // vertices executed together
+
+// Output registers in the order of this array: oPos, oD0, oD1, oT0..oT7, oFog (x), oPts (x).
+enum Output : int { oPos = 0, oD0 = 1, oD1 = 2, oT0 = 3, oFog = 11, oPts = 12, kOutputs = 13 };
+
+// Registers of a batch, structure of arrays: [register][component][vertex].
+struct InputBatch {
+  alignas(64) float v[16][4][kBatch];
+};
+struct OutputBatch {
+  alignas(64) float o[kOutputs][4][kBatch];
+};
+
+// A vs_1_1 program made ready to run on batches of vertices. Every SIMD target gives the bits of the scalar code.
+// Outputs: components that the program does not write are 0 (oD0: 1).
+class VertexProgram {
+ public:
+  VertexProgram(const isa::Program& program, Arithmetic arithmetic);
+  ~VertexProgram();
+  VertexProgram(VertexProgram&&) noexcept;
+  VertexProgram& operator=(VertexProgram&&) noexcept;
+
+  // Runs vertices 0..count-1 (count <= kBatch). Constants from c0; those not given are 0; `def` in the program wins.
+  void run(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out, int count) const;
+
+  // The same by the plain scalar interpreter that the SIMD code is checked against.
+  void run_scalar(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out, int count) const;
+
+ private:
+  struct Decoded;
+  std::unique_ptr<Decoded> decoded_;
+};
+
+}  // namespace splatscope::vertex
