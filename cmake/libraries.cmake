@@ -11,7 +11,7 @@ pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(systemc REQUIRED IMPORTED_TARGET systemc)
 # By pkg-config: OpenImageIO's CMake target names an OpenCV include folder that Debian's package lacks.
 pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)
-find_package(flatbuffers CONFIG REQUIRED)
+find_package(FlatBuffers CONFIG REQUIRED)
 
 add_library(Highway ALIAS PkgConfig::hwy)
 add_library(OpenImage ALIAS PkgConfig::openimageio)
