@@ -1,0 +1,38 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "app/commands.h"
+#include "model/error.h"
+
+namespace {
+
+enum Exit : int { kDone = 0, kFailed = 1, kBadInput = 2 };
+
+int run(int argc, char** argv) {
+  using namespace splatscope::app;
+  CLI::App app("splatscope: a cycle-level simulator of a programmable GPU of 2002, and EWA splatting on it");
+  app.require_subcommand(1);
+  int status = kDone;
+  add_trace_command(app, status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const splatscope::UserError& error) {
+    std::cerr << error.what() << '\n';
+    return kBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "splatscope: " << error.what() << '\n';
+    return kFailed;
+  }
+}

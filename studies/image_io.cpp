@@ -1,0 +1,100 @@
+#include "studies/image_io.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "model/error.h"
+#include "traces/output_files.h"
+
+namespace splatscope::studies {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const OIIO::ImageSpec& spec, const void* pixels, OIIO::stride_t pixel_stride,
+           OIIO::Filesystem::IOProxy* proxy = nullptr) {
+  const auto out = OIIO::ImageOutput::create(path.string(), proxy);
+  if (!out || !out->open(path.string(), spec) ||
+      !out->write_image(OIIO::TypeDesc::FLOAT, pixels, pixel_stride) || !out->close())
+    throw std::runtime_error(
+        fmt::format("{}: writing failed: {}", path.string(), out ? out->geterror() : OIIO::geterror()));
+}
+
+OIIO::ImageSpec png_spec(const Image& image) {
+  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");  // shown as it is, like a frame buffer of 2002
+  return spec;
+}
+
+constexpr OIIO::stride_t kPixelStride = sizeof(std::array<float, 4>);
+
+}  // namespace
+
+void write_exr(const Image& image, const fs::path& path) {
+  traces::OutputFile file(path);
+  write(file.temporary(), OIIO::ImageSpec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT),
+        image.pixels.data(), kPixelStride);
+  file.commit();
+}
+
+void write_exr(const GrayImage& image, const fs::path& path) {
+  traces::OutputFile file(path);
+  OIIO::ImageSpec spec(image.width, image.height, 1, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"Z"};
+  spec.z_channel = 0;
+  write(file.temporary(), spec, image.pixels.data(), sizeof(float));
+  file.commit();
+}
+
+void write_png(const Image& image, const fs::path& path) {
+  traces::write_file(path, encode_png(image));
+}
+
+std::vector<std::byte> encode_png(const Image& image) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput proxy(bytes);
+  write("picture.png", png_spec(image), image.pixels.data(), kPixelStride, &proxy);
+  std::vector<std::byte> result(bytes.size());
+  std::memcpy(result.data(), bytes.data(), bytes.size());
+  return result;
+}
+
+Image read_image(const fs::path& path) {
+  const auto in = OIIO::ImageInput::open(path.string());
+  if (!in) throw UserError(path.string(), 0, "cannot be read, expected a picture (EXR or PNG)");
+  const OIIO::ImageSpec& spec = in->spec();
+  Image image(spec.width, spec.height);
+  const int channels = std::min(spec.nchannels, 4);
+  for (auto& pixel : image.pixels) pixel = {0, 0, 0, 1};
+  if (!in->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, image.pixels.data(), kPixelStride))
+    throw UserError(path.string(), 0, fmt::format("is damaged ({}), expected a picture", in->geterror()));
+  if (channels < 3)
+    for (auto& pixel : image.pixels) pixel[1] = pixel[2] = pixel[0];
+  return image;
+}
+
+double psnr(const Image& a, const Image& b, const std::vector<unsigned char>& mask) {
+  if (a.width != b.width || a.height != b.height || (!mask.empty() && mask.size() != a.pixels.size()))
+    throw ModelError("psnr: the pictures differ in size");
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    if (!mask.empty() && !mask[i]) continue;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const double difference = double{a.pixels[i][channel]} - double{b.pixels[i][channel]};
+      sum += difference * difference;
+    }
+    count += 3;
+  }
+  if (count == 0) return std::numeric_limits<double>::quiet_NaN();
+  if (sum == 0) return std::numeric_limits<double>::infinity();
+  return -10 * std::log10(sum / static_cast<double>(count));
+}
+
+}  // namespace splatscope::studies

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+// Pictures as files, and how far two of them are apart. All through OpenImageIO.
+namespace splatscope::studies {
+
+// Rows from the top, pixel by pixel, r g b a each; 1 is white. Linear: no gamma is applied anywhere, as on
+// the machines of 2002.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::array<float, 4>> pixels;  // width * height
+
+  Image() = default;
+  Image(int w, int h)
+      : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+  std::array<float, 4>& at(int x, int y) { return pixels[index(x, y)]; }
+  const std::array<float, 4>& at(int x, int y) const { return pixels[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+};
+
+// One channel, e.g. depth: 0 near, 1 far.
+struct GrayImage {
+  int width = 0;
+  int height = 0;
+  std::vector<float> pixels;
+};
+
+// Files appear whole or not at all. Throw UserError where the place cannot be written, std::runtime_error
+// where the library fails.
+void write_exr(const Image& image, const std::filesystem::path& path);      // binary32 RGBA
+void write_exr(const GrayImage& image, const std::filesystem::path& path);  // binary32, channel Z
+void write_png(const Image& image, const std::filesystem::path& path);  // 8-bit RGB: alpha holds no coverage
+
+// Bytes of a PNG file.
+std::vector<std::byte> encode_png(const Image& image);
+
+// Throws UserError where the file is missing or no picture. Any number of channels becomes RGBA.
+Image read_image(const std::filesystem::path& path);
+
+// Peak signal-to-noise ratio of r, g and b against peak 1, in dB, over the pixels where `mask` is not 0
+// (empty: all of them). Infinite where they are equal, NaN where the mask is empty of pixels. The sizes must
+// agree.
+double psnr(const Image& a, const Image& b, const std::vector<unsigned char>& mask = {});
+
+}  // namespace splatscope::studies

@@ -1,0 +1,65 @@
+#include "traces/scene.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "model/error.h"
+#include "traces/plane.h"
+#include "traces/ready_scenes.h"
+#include "traces/scene_settings.h"
+
+namespace splatscope::traces {
+namespace {
+
+std::string read_text(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMost = 1 << 20;  // bytes: a scene file is written by hand
+  std::ifstream in(path, std::ios::binary);
+  std::error_code error;
+  const bool regular = std::filesystem::is_regular_file(path, error);
+  if (!in || !regular) throw UserError(path.string(), 0, "cannot be read, expected a scene file");
+  if (std::filesystem::file_size(path, error) > kMost)
+    throw UserError(path.string(), 0, "is larger than 1 MiB, expected a scene file");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return std::move(text).str();
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
+  const SceneSettings settings = parse_settings(text, file.string());
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.camera = settings.camera;
+  scene.frame = {settings.width, settings.height, glm::vec3(settings.background)};
+  scene.splatting = settings.splatting;
+  scene.surfels = make_plane(settings.surfels);
+  scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : kPlaneSpacing;
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& name_or_path) {
+  std::error_code error;
+  if (!std::filesystem::exists(name_or_path, error)) {
+    for (const EmbeddedFile& ready : ready_scenes()) {
+      const std::filesystem::path file(ready.name);
+      if (name_or_path == file || name_or_path == file.stem()) return parse_scene(ready.text, file);
+    }
+    std::string names;
+    for (const EmbeddedFile& ready : ready_scenes())
+      names += fmt::format(", {}", std::filesystem::path(ready.name).stem().string());
+    throw UserError(name_or_path.string(), 0,
+                    fmt::format("no such file, expected a scene file or one of the ready scenes{}", names));
+  }
+  return parse_scene(read_text(name_or_path), name_or_path);
+}
+
+std::string_view name(Algorithm algorithm) {
+  constexpr std::string_view kNames[] = {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"};
+  return kNames[static_cast<int>(algorithm)];
+}
+
+}  // namespace splatscope::traces

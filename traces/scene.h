@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// What a user wants drawn: surfels, a camera, and how to splat. It lives on the host; the recorder turns it
+// into a trace, which knows no surfel.
+namespace splatscope::traces {
+
+// A point sample of a surface (Ren 2002, section 2).
+struct Surfel {
+  glm::vec3 position{};  // object units
+  glm::vec3 normal{};    // of unit length
+  float radius = 0;      // h: the largest distance to a neighbouring surfel, object units, > 0
+  glm::vec3 color{};     // r g b, each in [0, 1]
+};
+
+struct Camera {
+  glm::dvec3 eye{};
+  glm::dvec3 target{};
+  glm::dvec3 up{};
+  double fov_y_degrees = 0;  // of the frame's height
+  double near = 0;           // distances of the clip planes, object units
+  double far = 0;
+};
+
+struct Frame {
+  int width = 0;   // pixels
+  int height = 0;  // pixels
+  glm::vec3 background{};
+};
+
+// The three algorithms of Table 1 (Ren 2002, section 8).
+enum class Algorithm { no_ewa, ewa_per_pixel, ewa_per_surfel };
+
+enum class VertexMemory { video, agp };
+
+struct Splatting {
+  Algorithm algorithm = Algorithm::ewa_per_surfel;
+  double cutoff = 0;        // c: the splat ends at c standard deviations (5.2)
+  double depth_offset = 0;  // z_t of the visibility pass, object units (5.1)
+  double gamma = 0;         // scale of the weights, below 1 so that their sums do not saturate (7.2)
+  double sigma = 0;         // standard deviation of the reconstruction filter, in units of a surfel's radius
+  bool circular_cutoff = false;  // texels further than c from the centre are 0; else the whole square is used
+  VertexMemory vertex_memory = VertexMemory::video;
+};
+
+// Surfels that were left out while loading, by the first reason that held.
+struct SkipCounts {
+  std::size_t not_finite = 0;   // a NaN or INF in position, normal, radius or color
+  std::size_t zero_radius = 0;  // radius <= 0
+  std::size_t zero_normal = 0;  // length 0, and no direction to be had from the neighbours
+
+  std::size_t total() const { return not_finite + zero_radius + zero_normal; }
+};
+
+struct Scene {
+  std::string name;  // the scene file's name without folder and ending
+  std::vector<Surfel> surfels;
+  SkipCounts skipped;
+  Camera camera;
+  Frame frame;
+  Splatting splatting;
+};
+
+// Reads a scene file (TOML). Each key has a default (scene_keys.h). A surfel file's name is relative to the
+// scene file. `name_or_path` may also be the name of a ready scene ("checkerboard-no-ewa") where no such file
+// exists. Throws UserError: file missing, TOML wrong, key unknown, value of the wrong type or out of range.
+Scene load_scene(const std::filesystem::path& name_or_path);
+
+// The same from text; `file` is for messages and for finding the surfel file.
+Scene parse_scene(std::string_view text, const std::filesystem::path& file);
+
+// "no-ewa", "ewa-per-pixel", "ewa-per-surfel": as in scene files and results.
+std::string_view name(Algorithm algorithm);
+
+}  // namespace splatscope::traces

@@ -1,0 +1,135 @@
+#include "traces/scene_keys.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace splatscope::traces {
+namespace {
+
+constexpr double kFar = 1e30;  // no scene needs more, and squares of it still fit a double
+
+template <class... Parts>
+struct Overloaded : Parts... {
+  using Parts::operator()...;
+};
+template <class... Parts>
+Overloaded(Parts...) -> Overloaded<Parts...>;
+
+using S = SceneSettings;
+
+// The default picture is Fig. 11 of Ren 2002: a plane of 64k surfels that recedes toward the horizon.
+const std::array kKeys = {
+    SceneKey{"surfels", "file", "",
+             "surfel file (PLY), relative to the scene file; empty: `generator` makes them",
+             TextValue{[](S& s) -> std::string& { return s.surfels.file; }, ""}},
+    SceneKey{"surfels", "generator", "", "what makes the surfels where no file is given",
+             ChoiceValue{[](S& s, int i) { s.surfels.generator = Generator(i); }, {"plane"}, 0}},
+    SceneKey{"surfels", "columns", "surfels", "of the plane y = 0, along x, one unit apart, centred",
+             IntegerValue{[](S& s) -> int& { return s.surfels.columns; }, 256, 1, 4096}},
+    SceneKey{"surfels", "rows", "surfels", "of the plane, along z",
+             IntegerValue{[](S& s) -> int& { return s.surfels.rows; }, 256, 1, 4096}},
+    SceneKey{"surfels", "checker_square", "surfels", "edge of a square of the plane's checkerboard",
+             IntegerValue{[](S& s) -> int& { return s.surfels.checker_square; }, 4, 1, 4096}},
+    SceneKey{"surfels", "checker_light", "r g b", "colour of the squares with an even number",
+             VectorValue{[](S& s) -> glm::dvec3& { return s.surfels.checker_light; }, {1, 1, 1}, 0, 1}},
+    SceneKey{"surfels", "checker_dark", "r g b", "colour of the others",
+             VectorValue{[](S& s) -> glm::dvec3& { return s.surfels.checker_dark; }, {0, 0, 0}, 0, 1}},
+    SceneKey{"surfels", "neighbours", "surfels",
+             "nearest neighbours that a radius or normal is estimated from where the file has none",
+             IntegerValue{[](S& s) -> int& { return s.surfels.neighbours; }, 8, 3, 64}},
+
+    SceneKey{"camera", "eye", "object units", "where the camera is",
+             VectorValue{[](S& s) -> glm::dvec3& { return s.camera.eye; }, {0, 30, 166}, -kFar, kFar}},
+    SceneKey{"camera", "target", "object units", "what it looks at",
+             VectorValue{[](S& s) -> glm::dvec3& { return s.camera.target; }, {0, 3, 66}, -kFar, kFar}},
+    SceneKey{"camera", "up", "", "direction that is up in the picture",
+             VectorValue{[](S& s) -> glm::dvec3& { return s.camera.up; }, {0, 1, 0}, -kFar, kFar}},
+    SceneKey{"camera", "fov_y_degrees", "degrees", "angle of view over the frame's height",
+             RealValue{[](S& s) -> double& { return s.camera.fov_y_degrees; }, 45, 0.01, 179}},
+    SceneKey{"camera", "near", "object units", "distance of the near clip plane",
+             RealValue{[](S& s) -> double& { return s.camera.near; }, 1, 1e-6, kFar}},
+    SceneKey{"camera", "far", "object units", "distance of the far clip plane, beyond `near`",
+             RealValue{[](S& s) -> double& { return s.camera.far; }, 1000, 1e-6, kFar}},
+
+    SceneKey{"frame", "width", "pixels", "width of the picture",
+             IntegerValue{[](S& s) -> int& { return s.width; }, 512, 1, 4096}},
+    SceneKey{"frame", "height", "pixels", "height of the picture",
+             IntegerValue{[](S& s) -> int& { return s.height; }, 512, 1, 4096}},
+    SceneKey{"frame", "background", "r g b", "colour where no splat falls",
+             VectorValue{[](S& s) -> glm::dvec3& { return s.background; }, {0, 0, 0}, 0, 1}},
+
+    SceneKey{"splatting", "algorithm", "", "row of Table 1",
+             ChoiceValue{[](S& s, int i) { s.splatting.algorithm = Algorithm(i); },
+                         {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"},
+                         2}},
+    SceneKey{"splatting", "cutoff", "standard deviations", "c: where a splat ends (Ren 2002, 5.2)",
+             RealValue{[](S& s) -> double& { return s.splatting.cutoff; }, 1, 0.25, 8}},
+    SceneKey{"splatting", "depth_offset", "object units",
+             "z_t of the visibility pass (Ren 2002, 5.1); 0: the average spacing of the surfels",
+             RealValue{[](S& s) -> double& { return s.depth_offset; }, 0, 0, kFar}},
+    SceneKey{"splatting", "gamma", "", "scale of the weights against saturation (Ren 2002, 7.2)",
+             RealValue{[](S& s) -> double& { return s.splatting.gamma; }, 0.73, 0.01, 1}},
+    // 1/sqrt 2: on a square grid, whose radius is the diagonal, the deviation is then the spacing (Ren 2002,
+    // 6: "for points with approximately unit spacing, the reconstruction kernel is chosen as a unit
+    // Gaussian").
+    SceneKey{"splatting", "sigma", "radii", "standard deviation of the reconstruction filter",
+             RealValue{[](S& s) -> double& { return s.splatting.sigma; }, 0.70710678118654752, 0.01, 10}},
+    SceneKey{"splatting", "circular_cutoff", "", "texels further than `cutoff` from the centre are 0",
+             BooleanValue{[](S& s) -> bool& { return s.splatting.circular_cutoff; }, true}},
+    SceneKey{
+        "splatting", "vertex_memory", "", "where the vertex buffers lie",
+        ChoiceValue{[](S& s, int i) { s.splatting.vertex_memory = VertexMemory(i); }, {"video", "agp"}, 0}},
+};
+
+std::string quoted_list(const std::vector<std::string_view>& names) {
+  std::string list;
+  for (std::string_view name : names) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", name);
+  return list;
+}
+
+}  // namespace
+
+std::span<const SceneKey> scene_keys() {
+  return kKeys;
+}
+
+std::string expectation(const SceneKey& key) {
+  return std::visit(
+      Overloaded{
+          [](const RealValue& v) { return fmt::format("a number from {:g} to {:g}", v.min, v.max); },
+          [](const IntegerValue& v) { return fmt::format("a whole number from {} to {}", v.min, v.max); },
+          [](const BooleanValue&) { return std::string("true or false"); },
+          [](const TextValue&) { return std::string("a string"); },
+          [](const ChoiceValue& v) { return (v.names.size() > 1 ? "one of " : "") + quoted_list(v.names); },
+          [](const VectorValue& v) {
+            return fmt::format("an array of three numbers from {:g} to {:g}", v.min, v.max);
+          }},
+      key.value);
+}
+
+std::string default_text(const SceneKey& key) {
+  return std::visit(
+      Overloaded{[](const RealValue& v) { return fmt::format("{:g}", v.initial); },
+                 [](const IntegerValue& v) { return fmt::format("{}", v.initial); },
+                 [](const BooleanValue& v) { return fmt::format("{}", v.initial); },
+                 [](const TextValue& v) { return fmt::format("\"{}\"", v.initial); },
+                 [](const ChoiceValue& v) { return fmt::format("\"{}\"", v.names[std::size_t(v.initial)]); },
+                 [](const VectorValue& v) {
+                   return fmt::format("[{:g}, {:g}, {:g}]", v.initial.x, v.initial.y, v.initial.z);
+                 }},
+      key.value);
+}
+
+SceneSettings default_settings() {
+  SceneSettings settings;
+  for (const SceneKey& key : scene_keys()) {
+    std::visit(Overloaded{[&](const ChoiceValue& v) { v.store(settings, v.initial); },
+                          [&](const TextValue& v) { v.place(settings) = std::string(v.initial); },
+                          [&](const auto& v) { v.place(settings) = v.initial; }},
+               key.value);
+  }
+  return settings;
+}
+
+}  // namespace splatscope::traces

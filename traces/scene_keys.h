@@ -1,0 +1,83 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "traces/scene.h"
+
+// Every key of a scene file, declared once: parsing, error messages and the documentation come from it.
+namespace splatscope::traces {
+
+enum class Generator { plane };
+
+struct SurfelSource {
+  std::string file;  // empty: the generator
+  Generator generator = Generator::plane;
+  int columns = 0, rows = 0;  // of the plane
+  int checker_square = 0;     // surfels
+  glm::dvec3 checker_light{}, checker_dark{};
+  int neighbours = 0;  // whose largest distance is the radius, and that the normal is fitted to
+};
+
+// A scene file's values before surfels are made.
+struct SceneSettings {
+  SurfelSource surfels;
+  Camera camera;
+  int width = 0, height = 0;
+  glm::dvec3 background{};
+  Splatting splatting;
+  double depth_offset = 0;  // 0: the average spacing
+};
+
+// Each kind of value finds its place in the settings, and knows its default and range.
+struct RealValue {
+  double& (*place)(SceneSettings&);
+  double initial;
+  double min, max;  // both allowed
+};
+struct IntegerValue {
+  int& (*place)(SceneSettings&);
+  int initial;
+  int min, max;  // both allowed
+};
+struct BooleanValue {
+  bool& (*place)(SceneSettings&);
+  bool initial;
+};
+struct TextValue {
+  std::string& (*place)(SceneSettings&);
+  std::string_view initial;
+};
+struct ChoiceValue {
+  void (*store)(SceneSettings&, int);
+  std::vector<std::string_view> names;
+  int initial;  // place in `names`
+};
+struct VectorValue {  // three numbers
+  glm::dvec3& (*place)(SceneSettings&);
+  glm::dvec3 initial;
+  double min, max;  // of each number, both allowed
+};
+
+struct SceneKey {
+  std::string_view table;
+  std::string_view name;
+  std::string_view unit;
+  std::string_view description;
+  std::variant<RealValue, IntegerValue, BooleanValue, TextValue, ChoiceValue, VectorValue> value;
+};
+
+std::span<const SceneKey> scene_keys();
+
+// "a number from 0 to 10", for messages and documentation.
+std::string expectation(const SceneKey& key);
+
+// "0.73", as it would stand in a scene file.
+std::string default_text(const SceneKey& key);
+
+SceneSettings default_settings();
+
+}  // namespace splatscope::traces

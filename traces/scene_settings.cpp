@@ -1,0 +1,150 @@
+#include "traces/scene_settings.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "model/error.h"
+
+namespace splatscope::traces {
+namespace {
+
+// Stores the value of one key; false where its type or range is wrong.
+struct Store {
+  SceneSettings& settings;
+  const toml::node& node;
+
+  bool operator()(const RealValue& v) const {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value || !(*value >= v.min && *value <= v.max)) return false;
+    v.place(settings) = *value;
+    return true;
+  }
+  bool operator()(const IntegerValue& v) const {
+    const auto value = node.value_exact<std::int64_t>();
+    if (!value || *value < v.min || *value > v.max) return false;
+    v.place(settings) = static_cast<int>(*value);
+    return true;
+  }
+  bool operator()(const BooleanValue& v) const {
+    const auto value = node.value_exact<bool>();
+    if (value) v.place(settings) = *value;
+    return value.has_value();
+  }
+  bool operator()(const TextValue& v) const {
+    const auto value = node.value_exact<std::string>();
+    if (value) v.place(settings) = *value;
+    return value.has_value();
+  }
+  bool operator()(const ChoiceValue& v) const {
+    const auto value = node.value_exact<std::string>();
+    const auto found = value ? std::find(v.names.begin(), v.names.end(), *value) : v.names.end();
+    if (found == v.names.end()) return false;
+    v.store(settings, static_cast<int>(found - v.names.begin()));
+    return true;
+  }
+  bool operator()(const VectorValue& v) const {
+    const toml::array* numbers = node.as_array();
+    if (!numbers || numbers->size() != 3) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const toml::node& number = *numbers->get(i);
+      const auto value = number.is_number() ? number.value<double>() : std::nullopt;
+      if (!value || !(*value >= v.min && *value <= v.max)) return false;
+      v.place(settings)[static_cast<glm::length_t>(i)] = *value;
+    }
+    return true;
+  }
+};
+
+// The value as it stands in the file, cut to a length that an error message can bear.
+std::string shown(const toml::node& node) {
+  std::ostringstream out;
+  out << toml::node_view<const toml::node>(&node);
+  std::string text = out.str();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+int line(const toml::node& node) {
+  return static_cast<int>(node.source().begin.line);
+}
+int line(const toml::key& key) {
+  return static_cast<int>(key.source().begin.line);
+}
+
+std::string names_of(std::string_view table) {
+  std::string names;
+  for (const SceneKey& key : scene_keys()) {
+    const std::string_view name = table.empty() ? key.table : key.name;
+    const bool listed = !table.empty() ? key.table != table : names.find(name) != std::string::npos;
+    if (!listed) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  }
+  return names;
+}
+
+void read_table(SceneSettings& settings, std::string_view name, const toml::table& table,
+                std::string_view file) {
+  const auto keys = scene_keys();
+  for (const auto& [key, node] : table) {
+    const auto found = std::find_if(keys.begin(), keys.end(), [&](const SceneKey& declared) {
+      return declared.table == name && declared.name == key.str();
+    });
+    if (found == keys.end())
+      throw UserError(
+          file, line(key),
+          fmt::format("unknown key \"{}\" in [{}], expected one of: {}", key.str(), name, names_of(name)));
+    if (!std::visit(Store{settings, node}, found->value))
+      throw UserError(
+          file, line(node),
+          fmt::format("{}.{} is {}, expected {}", name, key.str(), shown(node), expectation(*found)));
+  }
+}
+
+// What no single key can tell.
+void check_together(const SceneSettings& settings, const toml::table& root, std::string_view file) {
+  const toml::table* camera = root["camera"].as_table();
+  const int at = camera ? line(*camera) : 0;
+  const Camera& c = settings.camera;
+  if (!(c.near < c.far))
+    throw UserError(
+        file, at, fmt::format("camera.near is {:g} and camera.far {:g}, expected near < far", c.near, c.far));
+  const glm::dvec3 view = c.target - c.eye;
+  if (glm::length(view) == 0)
+    throw UserError(file, at, "camera.eye equals camera.target, expected two points");
+  if (glm::length(c.up) == 0) throw UserError(file, at, "camera.up is zero, expected a direction");
+  if (glm::length(glm::cross(glm::normalize(view), glm::normalize(c.up))) < 1e-9)
+    throw UserError(file, at, "camera.up lies along the line of sight, expected another direction");
+}
+
+}  // namespace
+
+SceneSettings parse_settings(std::string_view text, std::string_view file) {
+  toml::table root;
+  try {
+    root = toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw UserError(file, static_cast<int>(error.source().begin.line),
+                    fmt::format("{}, expected TOML", error.description()));
+  }
+  SceneSettings settings = default_settings();
+  for (const auto& [name, node] : root) {
+    const auto keys = scene_keys();
+    const bool known =
+        std::any_of(keys.begin(), keys.end(), [&](const SceneKey& key) { return key.table == name.str(); });
+    if (!known)
+      throw UserError(file, line(name),
+                      fmt::format("unknown table \"{}\", expected one of: {}", name.str(), names_of("")));
+    if (!node.is_table())
+      throw UserError(file, line(name),
+                      fmt::format("\"{}\" is a value, expected a table [{}]", name.str(), name.str()));
+    read_table(settings, name.str(), *node.as_table(), file);
+  }
+  check_together(settings, root, file);
+  return settings;
+}
+
+}  // namespace splatscope::traces

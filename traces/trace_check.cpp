@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "model/error.h"
+#include "traces/trace_file.h"
+
+namespace splatscope::traces {
+namespace {
+
+constexpr std::uint32_t kMaxFrameEdge = 4096;    // pixels
+constexpr std::uint32_t kMaxTextureEdge = 2048;  // texels: the limit of both machines of 2002
+constexpr std::uint32_t kMaxStride = 1024;       // bytes: 16 attributes of 16 bytes, and room
+constexpr std::size_t kMaxConstants = 96;        // vs_1_1
+constexpr std::uint8_t kInputs = 16;             // vs_1_1
+
+// Checks the commands of one trace. `where` names the part that a message is about.
+class Checker {
+ public:
+  Checker(const Trace& trace, std::string_view file) : trace_(trace), file_(file) {}
+
+  void check() {
+    where_ = "frame";
+    in_range("width", trace_.width, 1, kMaxFrameEdge);
+    in_range("height", trace_.height, 1, kMaxFrameEdge);
+    for (std::size_t i = 0; i < trace_.buffers.size(); ++i) {
+      where_ = fmt::format("buffer {}", i);
+      in_range("memory place", static_cast<unsigned>(trace_.buffers[i].place), 0, 1);
+    }
+    for (std::size_t i = 0; i < trace_.textures.size(); ++i) {
+      where_ = fmt::format("texture {}", i);
+      check_texture(trace_.textures[i]);
+    }
+    for (std::size_t i = 0; i < trace_.commands.size(); ++i) {
+      where_ = fmt::format("command {}", i);
+      std::visit([this](const auto& command) { check_command(command); }, trace_.commands[i]);
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view what, std::string_view expected) const {
+    throw UserError(file_, 0, fmt::format("{}: {}, expected {}", where_, what, expected));
+  }
+
+  void in_range(std::string_view what, std::uint64_t value, std::uint64_t min, std::uint64_t max) const {
+    if (value < min || value > max)
+      fail(fmt::format("{} is {}", what, value), fmt::format("{} to {}", min, max));
+  }
+
+  void in_unit_range(std::string_view what, float value) const {
+    if (!(value >= 0 && value <= 1)) fail(fmt::format("{} is {}", what, value), "0 to 1");
+  }
+
+  template <class Item>
+  const Item& item(std::string_view what, const std::vector<Item>& items, std::uint32_t index) const {
+    if (index >= items.size())
+      fail(fmt::format("{} {} does not exist", what, index),
+           fmt::format("one of the {} in the trace", items.size()));
+    return items[index];
+  }
+
+  void check_texture(const Texture& texture) const {
+    in_range("width", texture.width, 1, kMaxTextureEdge);
+    in_range("height", texture.height, 1, kMaxTextureEdge);
+    const std::size_t texels = std::size_t{texture.width} * texture.height;
+    if (texture.texels.size() != texels)
+      fail(fmt::format("{} bytes of texels", texture.texels.size()),
+           fmt::format("{} for {} x {}", texels, texture.width, texture.height));
+  }
+
+  void check_command(const NormalizeOnHost&) const {}
+
+  void check_command(const Clear& clear) const {
+    for (float channel : clear.color) in_unit_range("clear color", channel);
+    in_unit_range("clear depth", clear.depth);
+  }
+
+  void check_command(const Draw& draw) const {
+    item("vertex program", trace_.programs, draw.vertex_program);
+    if (draw.pixel_program) item("pixel program", trace_.programs, *draw.pixel_program);
+    if (draw.texture) item("texture", trace_.textures, *draw.texture);
+    in_range("number of constants", draw.constants.size(), 0, kMaxConstants);
+    const auto last = static_cast<unsigned>(BlendFactor::src_alpha_saturate);
+    in_range("source blend factor", static_cast<unsigned>(draw.state.source_factor), 0, last);
+    in_range("destination blend factor", static_cast<unsigned>(draw.state.destination_factor), 0, last);
+    check_attributes(draw);
+    check_indices(draw);
+  }
+
+  void check_attributes(const Draw& draw) const {
+    in_range("vertex stride", draw.vertex_stride, 1, kMaxStride);
+    in_range("number of attributes", draw.attributes.size(), 1, kInputs);
+    std::uint32_t seen = 0;
+    for (const VertexAttribute& attribute : draw.attributes) {
+      in_range("attribute's input register", attribute.input, 0, kInputs - 1);
+      if (seen & (1u << attribute.input))
+        fail(fmt::format("input register v{} is given twice", attribute.input), "one attribute a register");
+      seen |= 1u << attribute.input;
+      in_range("attribute's format", static_cast<unsigned>(attribute.format), 0,
+               static_cast<unsigned>(VertexFormat::short4));
+      if (attribute.offset + size_in_bytes(attribute.format) > draw.vertex_stride)
+        fail(fmt::format("attribute of v{} ends at byte {}", attribute.input,
+                         attribute.offset + size_in_bytes(attribute.format)),
+             fmt::format("an end within the stride of {} bytes", draw.vertex_stride));
+    }
+  }
+
+  void check_indices(const Draw& draw) const {
+    const Buffer& vertices = item("vertex buffer", trace_.buffers, draw.vertex_buffer);
+    const Buffer& indices = item("index buffer", trace_.buffers, draw.index_buffer);
+    if (draw.index_count % 3 != 0) fail(fmt::format("{} indices", draw.index_count), "a multiple of 3");
+    const std::uint64_t stored = indices.bytes.size() / sizeof(std::uint16_t);
+    const std::uint64_t end = std::uint64_t{draw.first_index} + draw.index_count;
+    if (end > stored)
+      fail(fmt::format("indices end at {}", end), fmt::format("an end within the {} of the buffer", stored));
+    std::uint16_t largest = 0;
+    for (std::uint64_t i = draw.first_index; i < end; ++i) {
+      std::uint16_t index = 0;
+      std::memcpy(&index, indices.bytes.data() + i * sizeof index, sizeof index);
+      largest = std::max(largest, index);
+    }
+    const std::uint64_t count = vertices.bytes.size() / draw.vertex_stride;
+    if (draw.index_count > 0 && std::uint64_t{draw.base_vertex} + largest >= count)
+      fail(fmt::format("vertex {} does not exist", std::uint64_t{draw.base_vertex} + largest),
+           fmt::format("one of the {} in the buffer", count));
+  }
+
+  const Trace& trace_;
+  std::string_view file_;
+  std::string where_;
+};
+
+}  // namespace
+
+std::uint32_t size_in_bytes(VertexFormat format) {
+  switch (format) {
+    case VertexFormat::float1:
+    case VertexFormat::d3dcolor:
+    case VertexFormat::ubyte4:
+    case VertexFormat::short2:
+      return 4;
+    case VertexFormat::float2:
+    case VertexFormat::short4:
+      return 8;
+    case VertexFormat::float3:
+      return 12;
+    case VertexFormat::float4:
+      return 16;
+  }
+  throw ModelError("size_in_bytes: no such vertex format");
+}
+
+void check_trace(const Trace& trace, std::string_view file) {
+  Checker(trace, file).check();
+}
+
+}  // namespace splatscope::traces

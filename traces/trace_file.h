@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+#include "model/command/commands.h"
+
+// A trace on disk: FlatBuffers by the schema trace.fbs.
+namespace splatscope::traces {
+
+// Of the format. A file of a newer version is refused; older ones are read.
+inline constexpr std::uint32_t kTraceVersion = 1;
+
+// The file appears whole or not at all. Throws UserError where the trace breaks a rule of check_trace or the
+// place cannot be written.
+void write_trace(const Trace& trace, const std::filesystem::path& path);
+
+// Throws UserError where the file cannot be read, is damaged, newer than this program, or breaks a rule of
+// check_trace. The memory taken is at most a small multiple of the file's size.
+Trace read_trace(const std::filesystem::path& path);
+
+// Every rule that the model and the simulator rely on: sizes, indices, ranges, and programs that load.
+// Throws UserError "file: what, expected what".
+void check_trace(const Trace& trace, std::string_view file);
+
+// Bytes of one attribute in a vertex.
+std::uint32_t size_in_bytes(VertexFormat format);
+
+}  // namespace splatscope::traces
