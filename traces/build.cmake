@@ -9,4 +9,4 @@ add_custom_command(OUTPUT ${generated}/traces/trace_generated.h
   COMMAND ${FLATC} --cpp --scoped-enums -o ${generated}/traces ${schema}
   DEPENDS ${schema} VERBATIM)
 target_sources(splatscope_traces PRIVATE ${generated}/traces/trace_generated.h)
-target_include_directories(splatscope_traces SYSTEM PRIVATE ${generated})
+target_include_directories(splatscope_traces SYSTEM PUBLIC ${generated})

@@ -1,0 +1,162 @@
+#include "traces/scene.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "model/error.h"
+#include "traces/scene_settings.h"
+
+namespace splatscope::traces {
+namespace {
+
+std::string error_of(std::string_view text) {
+  try {
+    parse_settings(text, "s.toml");
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Scene, EmptyFileIsThePlaneOfFigure11) {
+  const Scene scene = parse_scene("", "empty.toml");
+  EXPECT_EQ(scene.name, "empty");
+  EXPECT_EQ(scene.surfels.size(), 65536u);
+  EXPECT_EQ(scene.frame.width, 512);
+  EXPECT_EQ(scene.frame.height, 512);
+  EXPECT_EQ(scene.splatting.algorithm, Algorithm::ewa_per_surfel);
+  EXPECT_EQ(scene.splatting.cutoff, 1);
+  EXPECT_EQ(scene.splatting.gamma, 0.73);
+  EXPECT_EQ(scene.splatting.depth_offset, 1) << "the spacing of the plane";
+  EXPECT_TRUE(scene.splatting.circular_cutoff);
+  EXPECT_EQ(scene.splatting.vertex_memory, VertexMemory::video);
+}
+
+TEST(Scene, PlaneIsCentredWithSquaresOfTwoColours) {
+  const Scene scene = parse_scene(
+      "[surfels]\ncolumns = 6\nrows = 4\nchecker_square = 2\nchecker_light = [1, 0.5, 0]\nchecker_dark = [0, "
+      "0, 1]\n",
+      "plane.toml");
+  ASSERT_EQ(scene.surfels.size(), 24u);
+  glm::vec3 sum(0);
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      const Surfel& s = scene.surfels[static_cast<std::size_t>(row * 6 + column)];
+      EXPECT_EQ(s.position, glm::vec3(column - 2.5, 0, row - 1.5));
+      EXPECT_EQ(s.normal, glm::vec3(0, 1, 0));
+      EXPECT_FLOAT_EQ(s.radius, std::sqrt(2.0f));
+      const bool light = (row / 2 + column / 2) % 2 == 0;
+      EXPECT_EQ(s.color, light ? glm::vec3(1, 0.5, 0) : glm::vec3(0, 0, 1));
+      sum += s.position;
+    }
+  }
+  EXPECT_EQ(sum, glm::vec3(0));
+}
+
+TEST(Scene, EveryKeyIsRead) {
+  const SceneSettings s = parse_settings(R"(
+[surfels]
+file = "x.ply"
+neighbours = 9
+[camera]
+eye = [1, 2, 3]
+target = [4.5, 5, 6]
+up = [0, 0, 1]
+fov_y_degrees = 30
+near = 0.5
+far = 20
+[frame]
+width = 7
+height = 8
+background = [0.25, 0.5, 1]
+[splatting]
+algorithm = "no-ewa"
+cutoff = 2
+depth_offset = 0.125
+gamma = 0.5
+sigma = 0.75
+circular_cutoff = false
+vertex_memory = "agp"
+)",
+                                         "s.toml");
+  EXPECT_EQ(s.surfels.file, "x.ply");
+  EXPECT_EQ(s.surfels.neighbours, 9);
+  EXPECT_EQ(s.camera.eye, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(s.camera.target, glm::dvec3(4.5, 5, 6));
+  EXPECT_EQ(s.camera.up, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(s.camera.fov_y_degrees, 30);
+  EXPECT_EQ(s.camera.near, 0.5);
+  EXPECT_EQ(s.camera.far, 20);
+  EXPECT_EQ(s.width, 7);
+  EXPECT_EQ(s.height, 8);
+  EXPECT_EQ(s.background, glm::dvec3(0.25, 0.5, 1));
+  EXPECT_EQ(s.splatting.algorithm, Algorithm::no_ewa);
+  EXPECT_EQ(s.splatting.cutoff, 2);
+  EXPECT_EQ(s.depth_offset, 0.125);
+  EXPECT_EQ(s.splatting.gamma, 0.5);
+  EXPECT_EQ(s.splatting.sigma, 0.75);
+  EXPECT_FALSE(s.splatting.circular_cutoff);
+  EXPECT_EQ(s.splatting.vertex_memory, VertexMemory::agp);
+}
+
+TEST(Scene, ErrorsNameLineAndExpectation) {
+  EXPECT_EQ(error_of("[frame]\nwidth = \"big\"\n"),
+            "s.toml:2: frame.width is 'big', expected a whole number from 1 to 4096");
+  EXPECT_EQ(error_of("[frame]\n\nwidth = 0\n"),
+            "s.toml:3: frame.width is 0, expected a whole number from 1 to 4096");
+  EXPECT_EQ(error_of("[frame]\nwidth = 1.5\n"),
+            "s.toml:2: frame.width is 1.5, expected a whole number from 1 to 4096");
+  EXPECT_EQ(error_of("[frame]\nwidht = 5\n"),
+            "s.toml:2: unknown key \"widht\" in [frame], expected one of: width, height, background");
+  EXPECT_EQ(error_of("[cmaera]\n"),
+            "s.toml:1: unknown table \"cmaera\", expected one of: surfels, camera, frame, splatting");
+  EXPECT_EQ(error_of("camera = 3\n"), "s.toml:1: \"camera\" is a value, expected a table [camera]");
+  EXPECT_EQ(error_of("[splatting]\nalgorithm = \"EWA\"\n"),
+            "s.toml:2: splatting.algorithm is 'EWA', expected one of \"no-ewa\", \"ewa-per-pixel\", "
+            "\"ewa-per-surfel\"");
+  EXPECT_EQ(error_of("[splatting]\ngamma = nan\n"),
+            "s.toml:2: splatting.gamma is nan, expected a number from 0.01 to 1");
+  EXPECT_EQ(error_of("[splatting]\ncircular_cutoff = 1\n"),
+            "s.toml:2: splatting.circular_cutoff is 1, expected true or false");
+  EXPECT_EQ(error_of("[camera]\neye = [1, 2]\n"),
+            "s.toml:2: camera.eye is [ 1, 2 ], expected an array of three numbers from -1e+30 to 1e+30");
+  EXPECT_EQ(error_of("[camera]\neye = [1, inf, 2]\n"),
+            "s.toml:2: camera.eye is [ 1, inf, 2 ], expected an array of three numbers from -1e+30 to 1e+30");
+}
+
+TEST(Scene, CameraMustSeeSomething) {
+  EXPECT_NE(error_of("[camera]\nnear = 5\nfar = 5\n").find("s.toml:1: camera.near is 5"), std::string::npos);
+  EXPECT_NE(error_of("\n[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n").find("s.toml:2: camera.eye equals"),
+            std::string::npos);
+  EXPECT_NE(error_of("[camera]\nup = [0, 0, 0]\n").find("camera.up is zero"), std::string::npos);
+  EXPECT_NE(error_of("[camera]\neye = [0, 9, 0]\ntarget = [0, 1, 0]\n").find("along the line of sight"),
+            std::string::npos);
+}
+
+TEST(Scene, WrongTomlIsTheUsersErrorWithItsLine) {
+  EXPECT_EQ(error_of("[frame]\nwidth = \n").find("s.toml:2: "), 0u) << error_of("[frame]\nwidth = \n");
+  EXPECT_EQ(error_of("[frame]\nwidth = 1\nwidth = 2\n").find("s.toml:3: "), 0u);
+  EXPECT_EQ(error_of(std::string(100000, '[')).find("s.toml:1: "), 0u);
+}
+
+TEST(Scene, ReadyScenesAreTheThreeAlgorithms) {
+  EXPECT_EQ(load_scene("checkerboard-no-ewa").splatting.algorithm, Algorithm::no_ewa);
+  EXPECT_EQ(load_scene("checkerboard-per-pixel").splatting.algorithm, Algorithm::ewa_per_pixel);
+  EXPECT_EQ(load_scene("checkerboard-per-surfel.toml").splatting.algorithm, Algorithm::ewa_per_surfel);
+  EXPECT_THROW(load_scene("checkerboard-no-such"), UserError);
+}
+
+TEST(SceneKeys, DefaultsKeepTheirOwnRanges) {
+  std::string text, table;
+  for (const SceneKey& key : scene_keys()) {
+    if (key.table != table) text += fmt::format("[{}]\n", table = key.table);
+    text += fmt::format("{} = {}\n", key.name, default_text(key));
+  }
+  EXPECT_EQ(error_of(text), "no error") << text;
+}
+
+}  // namespace
+}  // namespace splatscope::traces
