@@ -7,6 +7,8 @@ find_package(TBB REQUIRED)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 find_package(rapidcheck REQUIRED)
+find_package(nanoflann REQUIRED)
+find_package(Eigen3 REQUIRED)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(systemc REQUIRED IMPORTED_TARGET systemc)
 # By pkg-config: OpenImageIO's CMake target names an OpenCV include folder that Debian's package lacks.

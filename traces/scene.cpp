@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "model/error.h"
-#include "traces/plane.h"
 #include "traces/ready_scenes.h"
 #include "traces/scene_settings.h"
+#include "traces/surfels.h"
 
 namespace splatscope::traces {
 namespace {
@@ -36,8 +36,10 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   scene.camera = settings.camera;
   scene.frame = {settings.width, settings.height, glm::vec3(settings.background)};
   scene.splatting = settings.splatting;
-  scene.surfels = make_plane(settings.surfels);
-  scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : kPlaneSpacing;
+  Surfels surfels = make_surfels(settings, file.parent_path());
+  scene.surfels = std::move(surfels.surfels);
+  scene.skipped = surfels.skipped;
+  scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : surfels.average_spacing;
   return scene;
 }
 

@@ -53,7 +53,7 @@ struct Splatting {
 struct SkipCounts {
   std::size_t not_finite = 0;   // a NaN or INF in position, normal, radius or color
   std::size_t zero_radius = 0;  // radius <= 0
-  std::size_t zero_normal = 0;  // length 0, and no direction to be had from the neighbours
+  std::size_t zero_normal = 0;  // of length 0, or to be fitted to neighbours that lie on one line
 
   std::size_t total() const { return not_finite + zero_radius + zero_normal; }
 };

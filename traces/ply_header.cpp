@@ -1,0 +1,148 @@
+#include "traces/ply_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "model/error.h"
+
+namespace splatscope::traces {
+namespace {
+
+constexpr std::size_t kMaxLine = 1024;       // characters of a header line
+constexpr int kMaxLines = 10000;             // of a header, comments too
+constexpr std::size_t kMaxProperties = 256;  // of an element
+
+std::optional<PlyType> type_named(std::string_view name) {
+  struct Named {
+    std::string_view name, alias;
+    PlyType type;
+  };
+  constexpr Named kNames[] = {
+      {"char", "int8", PlyType::int8},        {"uchar", "uint8", PlyType::uint8},
+      {"short", "int16", PlyType::int16},     {"ushort", "uint16", PlyType::uint16},
+      {"int", "int32", PlyType::int32},       {"uint", "uint32", PlyType::uint32},
+      {"float", "float32", PlyType::float32}, {"double", "float64", PlyType::float64},
+  };
+  for (const Named& n : kNames)
+    if (name == n.name || name == n.alias) return n.type;
+  return std::nullopt;
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; (at = line.find_first_not_of(" \t\r", at)) != line.npos;) {
+    const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+// The header, line by line.
+class HeaderReader {
+ public:
+  HeaderReader(std::istream& in, std::string_view file) : in_(in), file_(file) {}
+
+  PlyHeader read() {
+    if (next_line() != "ply") fail("the first line is not \"ply\"", "a PLY file");
+    bool has_format = false;
+    for (;;) {
+      const std::string line = next_line();
+      const auto words = words_of(line);
+      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+      if (words[0] == "format") {
+        read_format(words);
+        has_format = true;
+      } else if (words[0] == "element") {
+        read_element(words);
+      } else if (words[0] == "property") {
+        read_property(words);
+      } else if (words[0] == "end_header") {
+        break;
+      } else {
+        fail(fmt::format("unknown word \"{}\"", words[0].substr(0, 40)),
+             "format, comment, element, property or end_header");
+      }
+    }
+    if (!has_format) fail("the header has no line \"format\"", "\"format ascii 1.0\" or a binary one");
+    header_.lines = line_;
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view what, std::string_view expected) const {
+    throw UserError(file_, line_, fmt::format("{}, expected {}", what, expected));
+  }
+
+  std::string next_line() {
+    ++line_;
+    std::string line;
+    for (int c; (c = in_.get()) != '\n';) {
+      if (c == std::istream::traits_type::eof()) fail("the file ends within the header", "\"end_header\"");
+      if (line.size() == kMaxLine || line_ > kMaxLines) fail("the header does not end", "a PLY header");
+      line.push_back(static_cast<char>(c));
+    }
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    return line;
+  }
+
+  void read_format(const std::vector<std::string_view>& words) {
+    constexpr std::string_view kNames[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+    const auto found =
+        words.size() == 3 ? std::find(std::begin(kNames), std::end(kNames), words[1]) : std::end(kNames);
+    if (found == std::end(kNames) || words[2] != "1.0")
+      fail("unknown format", "\"format ascii|binary_little_endian|binary_big_endian 1.0\"");
+    header_.encoding = static_cast<PlyEncoding>(found - std::begin(kNames));
+  }
+
+  void read_element(const std::vector<std::string_view>& words) {
+    PlyElement element;
+    bool shaped = words.size() == 3;
+    if (shaped) {
+      element.name = words[1];
+      const char* end = words[2].data() + words[2].size();
+      const auto count = std::from_chars(words[2].data(), end, element.count);
+      shaped = count.ptr == end && count.ec == std::errc();
+    }
+    if (!shaped) fail("wrong element", "\"element NAME COUNT\"");
+    for (const PlyElement& other : header_.elements)
+      if (other.name == element.name) fail(fmt::format("element \"{}\" is given twice", element.name), "one");
+    header_.elements.push_back(std::move(element));
+  }
+
+  void read_property(const std::vector<std::string_view>& words) {
+    if (header_.elements.empty()) fail("a property stands before any element", "\"element\" first");
+    PlyProperty property;
+    property.is_list = words.size() == 5 && words[1] == "list";
+    const auto type = words.size() > 2 ? type_named(words[words.size() - 2]) : std::nullopt;
+    const auto count_type = property.is_list ? type_named(words[2]) : PlyType::uint8;
+    if ((words.size() != 3 && !property.is_list) || !type || !count_type || !is_integer(*count_type))
+      fail("wrong property", "\"property TYPE NAME\" or \"property list INTEGER_TYPE TYPE NAME\"");
+    property.name = words.back();
+    property.type = *type;
+    property.count_type = *count_type;
+    auto& properties = header_.elements.back().properties;
+    for (const PlyProperty& other : properties)
+      if (other.name == property.name)
+        fail(fmt::format("property \"{}\" is given twice", property.name), "one");
+    if (properties.size() == kMaxProperties)
+      fail("too many properties", fmt::format("at most {}", kMaxProperties));
+    properties.push_back(std::move(property));
+  }
+
+  std::istream& in_;
+  std::string_view file_;
+  int line_ = 0;
+  PlyHeader header_;
+};
+
+}  // namespace
+
+PlyHeader read_ply_header(std::istream& in, std::string_view file) {
+  return HeaderReader(in, file).read();
+}
+
+}  // namespace splatscope::traces

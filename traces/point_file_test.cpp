@@ -1,0 +1,271 @@
+#include "traces/point_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "model/error.h"
+#include "traces/output_files.h"
+
+namespace splatscope::traces {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PointFileTest : public testing::Test {
+ protected:
+  PointFileTest() { fs::create_directories(folder_); }
+  ~PointFileTest() override { fs::remove_all(folder_); }
+
+  PointFile read(std::string_view text) {
+    write_file(ply_, text);
+    return read_ply(ply_);
+  }
+  std::string error_of(std::string_view text) {
+    try {
+      read(text);
+    } catch (const UserError& error) {
+      return std::string(error.what()).substr(ply_.string().size());
+    }
+    return "no error";
+  }
+  Scene scene_of(std::string_view text, std::string_view keys = "") {
+    write_file(ply_, text);
+    return parse_scene(fmt::format("[surfels]\nfile = \"p.ply\"\n{}", keys), folder_ / "s.toml");
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / fmt::format("splatscope-{}-ply", ::getpid());
+  fs::path ply_ = folder_ / "p.ply";
+};
+
+template <class Value>
+void append(std::string& bytes, Value value, bool big_endian) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  if (big_endian) std::reverse(raw, raw + sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+// Properties out of order, unknown ones and lists between them, another element before.
+std::string binary_file(bool big_endian) {
+  std::string bytes = fmt::format(
+      "ply\r\nformat binary_{}_endian 1.0\r\ncomment made here\nelement other 2\nproperty list uchar short "
+      "a\n"
+      "element vertex 2\nproperty double z\nproperty uchar blue\nproperty uchar red\nproperty uchar green\n"
+      "property list ushort int extra\nproperty float x\nproperty float y\nproperty float nz\nproperty float "
+      "ny\n"
+      "property short nx\nproperty float radius\nend_header\n",
+      big_endian ? "big" : "little");
+  for (int items : {2, 0}) {
+    append(bytes, static_cast<std::uint8_t>(items), big_endian);
+    for (int i = 0; i < items; ++i) append(bytes, std::int16_t{-5}, big_endian);
+  }
+  for (int i = 0; i < 2; ++i) {
+    append(bytes, 3.5 + i, big_endian);
+    for (int c : {0, 255, 51}) append(bytes, static_cast<std::uint8_t>(c), big_endian);
+    append(bytes, std::uint16_t{1}, big_endian);
+    append(bytes, std::int32_t{77}, big_endian);
+    append(bytes, 1.25f, big_endian);
+    append(bytes, -2.0f, big_endian);
+    append(bytes, 0.0f, big_endian);
+    append(bytes, 0.5f, big_endian);
+    append(bytes, std::int16_t{-1}, big_endian);
+    append(bytes, 0.75f, big_endian);
+  }
+  return bytes;
+}
+
+TEST_F(PointFileTest, BinaryOfBothByteOrders) {
+  for (bool big_endian : {false, true}) {
+    const PointFile points = read(binary_file(big_endian));
+    EXPECT_TRUE(points.has_normals);
+    EXPECT_TRUE(points.has_radii);
+    ASSERT_EQ(points.surfels.size(), 2u);
+    for (int i = 0; i < 2; ++i) {
+      const Surfel& s = points.surfels[static_cast<std::size_t>(i)];
+      EXPECT_EQ(s.position, glm::vec3(1.25, -2, 3.5 + i));
+      EXPECT_EQ(s.normal, glm::vec3(-1, 0.5, 0));
+      EXPECT_EQ(s.radius, 0.75f);
+      EXPECT_EQ(s.color, glm::vec3(1, 0.2f, 0));
+    }
+  }
+}
+
+TEST_F(PointFileTest, EveryTruncationOfBinaryIsRefused) {
+  const std::string whole = binary_file(false);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_NE(error_of(whole.substr(0, size)), "no error") << size << " bytes of " << whole.size();
+}
+
+constexpr std::string_view kAscii =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float red\nproperty float green\nproperty float blue\nend_header\n"
+    "0 0 +1e1 0.5 0 1\n1 nan 0 2 -1 0\n\n 2 0 0 1 1 1";
+
+TEST_F(PointFileTest, Ascii) {
+  const PointFile points = read(kAscii);
+  EXPECT_FALSE(points.has_normals);
+  EXPECT_FALSE(points.has_radii);
+  ASSERT_EQ(points.surfels.size(), 3u);
+  EXPECT_EQ(points.surfels[0].position, glm::vec3(0, 0, 10));
+  EXPECT_EQ(points.surfels[0].color, glm::vec3(0.5, 0, 1));
+  EXPECT_TRUE(std::isnan(points.surfels[1].position.y));
+  EXPECT_EQ(points.surfels[2].position, glm::vec3(2, 0, 0));
+}
+
+TEST_F(PointFileTest, ErrorsNameLineOrByte) {
+  const std::string ascii(kAscii);
+  EXPECT_EQ(error_of("plyx\n"), ":1: the first line is not \"ply\", expected a PLY file");
+  EXPECT_EQ(error_of("ply\nformat ascii 2.0\n").find(":2: unknown format, expected"), 0u);
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nelement vertex many\n"),
+            ":3: wrong element, expected \"element NAME COUNT\"");
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nproperty float x\n").find(":3: a property stands before"), 0u);
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\n").find(":4: wrong property"),
+            0u);
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty int x\n")
+                .find(":5: property \"x\" is given twice"),
+            0u);
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nend_header\n").find(":3: the header has no element vertex"), 0u);
+  EXPECT_EQ(error_of("ply\nelement vertex 0\nend_header\n").find(":3: the header has no line \"format\""),
+            0u);
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"),
+            ":3: the file ends within the header, expected \"end_header\"");
+  EXPECT_EQ(error_of("ply\n" + std::string(5000, 'x')).find(":2: the header does not end"), 0u);
+  EXPECT_EQ(error_of(ascii.substr(0, ascii.size() - 1)),
+            ":14: the file ends within its data, expected a number");
+  std::string word = ascii;
+  word.replace(word.find("nan"), 3, "1,5");
+  EXPECT_EQ(error_of(word), ":12: \"1,5\" is no number, expected a number");
+  const std::string binary = binary_file(false);
+  EXPECT_EQ(error_of(binary.substr(0, binary.size() - 1)),
+            fmt::format(": the file ends within its data at byte {}, expected a value of 4 bytes",
+                        binary.size() - 4));
+}
+
+TEST_F(PointFileTest, HalfAGroupIsRefused) {
+  const auto file = [](std::string_view properties) {
+    return fmt::format("ply\nformat ascii 1.0\nelement vertex 0\n{}end_header\n", properties);
+  };
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  EXPECT_EQ(error_of(file(xyz)), "no error");
+  EXPECT_EQ(error_of(file("property float x\nproperty float z\n")),
+            ": property y of element vertex is missing, expected x, y and z");
+  EXPECT_EQ(error_of(file("property float a\n")).find(": property x, y, z of element vertex is missing"), 0u);
+  EXPECT_EQ(error_of(file(xyz + "property float nx\n")),
+            ": property ny, nz of element vertex is missing, expected all of its group or none");
+  EXPECT_EQ(error_of(file(xyz + "property uchar red\nproperty uchar blue\n")).find(": property green of"),
+            0u);
+}
+
+// Memory and time are bounded by the file, whatever it declares.
+TEST_F(PointFileTest, AbsurdCountsAreRefused) {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n";
+  const std::string head = "ply\nformat ascii 1.0\n";
+  EXPECT_NE(error_of(head + "element vertex 18446744073709551615\n" + xyz).find("do not fit in its"),
+            std::string::npos);
+  EXPECT_NE(error_of(head + "element vertex 99999999999999999999\n" + xyz).find(":3: wrong element"),
+            std::string::npos);
+  EXPECT_EQ(error_of(head + "element a 18446744073709551615\nelement vertex 1\n" + xyz), "no error");
+  EXPECT_NE(error_of(head + "element a 18446744073709551615\nproperty int i\nelement vertex 1\n" + xyz)
+                .find("the file ends within its data"),
+            std::string::npos);
+  EXPECT_NE(error_of(head + "element a 1\nproperty list int int i\nelement vertex 1\n" +
+                     xyz.substr(0, xyz.size() - 6) + "-3 0 0\n")
+                .find("a list of -3 items"),
+            std::string::npos);
+}
+
+TEST_F(PointFileTest, MutationsDoNoHarm) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(fmt::format("seed {}", seed));
+  std::mt19937 random(seed);
+  const std::string files[] = {binary_file(true), std::string(kAscii)};
+  for (int i = 0; i < 2000; ++i) {
+    std::string mutant = files[i % 2];
+    for (auto flips = 1 + random() % 3; flips > 0; --flips)
+      mutant[random() % mutant.size()] = static_cast<char>(random());
+    try {
+      for (const Surfel& s : scene_of(mutant).surfels) {
+        for (int axis = 0; axis < 3; ++axis) ASSERT_TRUE(std::isfinite(s.position[axis]));
+        ASSERT_GT(s.radius, 0);
+        ASSERT_NEAR(glm::length(s.normal), 1, 1e-5);
+      }
+    } catch (const UserError&) {
+    }
+  }
+}
+
+std::string with_normals_and_radii(std::string_view rows, int count) {
+  return fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float radius\nproperty float red\n"
+      "property float green\nproperty float blue\nend_header\n{}",
+      count, rows);
+}
+
+TEST_F(PointFileTest, SurfelsThatCannotBeDrawnAreCounted) {
+  const Scene scene =
+      scene_of(with_normals_and_radii("0 0 0  0 0 2   0.5  2 0.5 -1\n"  // drawn
+                                      "nan 0 0  0 0 1  1  0 0 0\n"      // not finite
+                                      "0 0 0  0 inf 1  1  0 0 0\n",     // not finite
+                                      3));
+  EXPECT_EQ(scene.surfels.size(), 1u);
+  EXPECT_EQ(scene.skipped.not_finite, 2u);
+  EXPECT_EQ(scene.surfels[0].normal, glm::vec3(0, 0, 1));
+  EXPECT_EQ(scene.surfels[0].color, glm::vec3(1, 0.5, 0));
+  EXPECT_EQ(scene.splatting.depth_offset, 0.5) << "a surfel alone has its radius for a spacing";
+
+  const Scene more =
+      scene_of(with_normals_and_radii("0 0 0  0 0 1   0  0 0 0\n"       // zero radius
+                                      "0 0 0  0 0 1   -1  0 0 0\n"      // zero radius
+                                      "0 0 0  0 0 0   1  0 0 0\n"       // zero normal
+                                      "0 0 0  1e-40 0 0   1  0 0 0\n",  // drawn: small is not zero
+                                      4));
+  EXPECT_EQ(more.skipped.zero_radius, 2u);
+  EXPECT_EQ(more.skipped.zero_normal, 1u);
+  ASSERT_EQ(more.surfels.size(), 1u);
+  EXPECT_EQ(more.surfels[0].normal, glm::vec3(1, 0, 0));
+}
+
+TEST_F(PointFileTest, RadiusAndNormalAreEstimated) {
+  std::string rows;
+  constexpr int kEdge = 9;
+  for (int i = 0; i < kEdge * kEdge; ++i) rows += fmt::format("{} {} 5\n", 2 * (i % kEdge), 2 * (i / kEdge));
+  const Scene scene = scene_of(
+      fmt::format(
+          "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+          "end_header\n{}",
+          kEdge * kEdge, rows),
+      "[camera]\neye = [0, 0, -10]\n");
+  ASSERT_EQ(scene.surfels.size(), 81u);
+  const Surfel& middle = scene.surfels[40];
+  EXPECT_FLOAT_EQ(middle.radius, 2 * std::sqrt(2.0f)) << "the diagonal neighbour is the furthest of 8";
+  for (const Surfel& s : scene.surfels) EXPECT_NEAR(s.normal.z, -1, 1e-6) << "toward the eye";
+  EXPECT_DOUBLE_EQ(scene.splatting.depth_offset, 2) << "the spacing";
+}
+
+TEST_F(PointFileTest, PointsOnOnePlaceOrLineAreLeftOut) {
+  const auto file = [](int count, std::string_view rows) {
+    return fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+        "end_header\n{}",
+        count, rows);
+  };
+  EXPECT_EQ(scene_of(file(3, "1 1 1 1 1 1 1 1 1")).skipped.zero_radius, 3u);
+  EXPECT_EQ(scene_of(file(1, "1 1 1")).skipped.zero_radius, 1u);
+  EXPECT_EQ(scene_of(file(3, "1 1 1 2 2 2 3 3 3")).skipped.zero_normal, 3u);
+  EXPECT_TRUE(scene_of(file(0, "")).surfels.empty());
+}
+
+TEST_F(PointFileTest, MissingFileIsTheUsersError) {
+  EXPECT_THROW(read_ply(folder_ / "none.ply"), UserError);
+  EXPECT_THROW(read_ply(folder_), UserError);
+}
+
+}  // namespace
+}  // namespace splatscope::traces
