@@ -7,6 +7,7 @@
 // 1 where a comparison did not hold.
 namespace splatscope::app {
 
+void add_scene_command(CLI::App& app, int& status);
 void add_trace_command(CLI::App& app, int& status);
 
 }  // namespace splatscope::app

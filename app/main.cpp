@@ -14,6 +14,7 @@ int run(int argc, char** argv) {
   CLI::App app("splatscope: a cycle-level simulator of a programmable GPU of 2002, and EWA splatting on it");
   app.require_subcommand(1);
   int status = kDone;
+  add_scene_command(app, status);
   add_trace_command(app, status);
   try {
     app.parse(argc, argv);

@@ -121,6 +121,14 @@ std::string default_text(const SceneKey& key) {
       key.value);
 }
 
+std::string describe_keys() {
+  std::string text = "| key | default | allowed | unit | what it is |\n|---|---|---|---|---|\n";
+  for (const SceneKey& key : scene_keys())
+    text += fmt::format("| `{}.{}` | `{}` | {} | {} | {} |\n", key.table, key.name, default_text(key),
+                        expectation(key), key.unit, key.description);
+  return text;
+}
+
 SceneSettings default_settings() {
   SceneSettings settings;
   for (const SceneKey& key : scene_keys()) {

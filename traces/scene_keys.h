@@ -78,6 +78,9 @@ std::string expectation(const SceneKey& key);
 // "0.73", as it would stand in a scene file.
 std::string default_text(const SceneKey& key);
 
+// All of them as a Markdown table, for the user's guide.
+std::string describe_keys();
+
 SceneSettings default_settings();
 
 }  // namespace splatscope::traces

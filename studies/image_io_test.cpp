@@ -1,0 +1,89 @@
+#include "studies/image_io.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "model/error.h"
+
+namespace splatscope::studies {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageFile : public testing::Test {
+ protected:
+  ImageFile() { fs::create_directories(folder_); }
+  ~ImageFile() override { fs::remove_all(folder_); }
+  fs::path folder_ = fs::temp_directory_path() / fmt::format("splatscope-{}-images", ::getpid());
+};
+
+Image ramp() {
+  Image image(5, 3);
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 5; ++x)
+      image.at(x, y) = {static_cast<float>(x) / 5, static_cast<float>(y) / 3, 1e-7f,
+                        static_cast<float>(x * y) - 2};
+  return image;
+}
+
+TEST_F(ImageFile, ExrKeepsEveryBit) {
+  write_exr(ramp(), folder_ / "a.exr");
+  const Image read = read_image(folder_ / "a.exr");
+  EXPECT_EQ(read.width, 5);
+  EXPECT_EQ(read.height, 3);
+  EXPECT_EQ(read.pixels, ramp().pixels);
+}
+
+TEST_F(ImageFile, DepthIsOneChannel) {
+  write_exr(GrayImage{2, 1, {0.25f, 1}}, folder_ / "depth.exr");
+  const Image read = read_image(folder_ / "depth.exr");
+  EXPECT_EQ(read.at(0, 0), (std::array<float, 4>{0.25f, 0.25f, 0.25f, 1}));
+  EXPECT_EQ(read.at(1, 0)[0], 1);
+}
+
+TEST_F(ImageFile, PngRoundsToEightBits) {
+  Image image(256, 1);
+  for (int x = 0; x < 256; ++x) {
+    const float value = (static_cast<float>(x) + (x % 2 ? 0.4f : -0.4f)) / 255;
+    image.at(x, 0) = {value, 1 - value, x < 128 ? -1.0f : 2.0f, 0.1f};
+  }
+  write_png(image, folder_ / "a.png");
+  const Image read = read_image(folder_ / "a.png");
+  for (int x = 0; x < 256; ++x) {
+    EXPECT_NEAR(read.at(x, 0)[0] * 255, x, 1e-4);
+    EXPECT_NEAR(read.at(x, 0)[1] * 255, 255 - x, 1e-4);
+    EXPECT_EQ(read.at(x, 0)[2], x < 128 ? 0 : 1) << "clamped";
+    EXPECT_EQ(read.at(x, 0)[3], 1) << "alpha is not stored: it holds weights, not coverage";
+  }
+}
+
+TEST_F(ImageFile, FilesAppearWholeOrNotAtAll) {
+  EXPECT_THROW(write_exr(ramp(), folder_ / "none" / "a.exr"), UserError);
+  EXPECT_THROW(write_png(ramp(), folder_ / "none" / "a.png"), UserError);
+  EXPECT_ANY_THROW(write_exr(ramp(), folder_ / "a.no-such-format"));
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(ImageFile, WhatIsNoPictureIsTheUsersError) {
+  EXPECT_THROW(read_image(folder_ / "none.exr"), UserError);
+}
+
+TEST(Psnr, KnownDistances) {
+  const Image black(4, 4);
+  Image gray = black;
+  for (auto& pixel : gray.pixels) pixel = {0.1f, 0.1f, 0.1f, 55};
+  EXPECT_NEAR(psnr(black, gray), 20, 1e-5) << "mean square error 0.01";
+  EXPECT_EQ(psnr(gray, gray), INFINITY);
+  std::vector<unsigned char> mask(16, 0);
+  EXPECT_TRUE(std::isnan(psnr(black, gray, mask)));
+  mask[3] = 1;
+  gray.pixels[3] = {1, 1, 1, 0};
+  EXPECT_EQ(psnr(black, gray, mask), 0) << "only the masked pixel counts";
+  EXPECT_THROW(psnr(black, Image(3, 4)), ModelError);
+}
+
+}  // namespace
+}  // namespace splatscope::studies

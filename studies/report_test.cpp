@@ -1,0 +1,45 @@
+#include "studies/report.h"
+
+#include <gtest/gtest.h>
+
+#include "model/error.h"
+
+namespace splatscope::studies {
+namespace {
+
+bool holds(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Report, EscapesWhateverItIsGiven) {
+  Report report("a < b", "\"lead\" & more");
+  report.heading("<h>");
+  report.paragraph("<script>alert(1)</script>");
+  report.table("<c>", {{"x<y", Report::Align::number}}, {{"<1>"}});
+  const std::string html = report.html();
+  EXPECT_FALSE(holds(html, "<script"));
+  EXPECT_FALSE(holds(html, "<1>"));
+  EXPECT_TRUE(holds(html, "<title>a &lt; b</title>"));
+  EXPECT_TRUE(holds(html, "&quot;lead&quot; &amp; more"));
+  EXPECT_TRUE(holds(html, "<th scope=\"col\" class=\"number\">x&lt;y</th>"));
+  EXPECT_TRUE(holds(html, "<td class=\"number\">&lt;1&gt;</td>"));
+}
+
+TEST(Report, LoadsNothing) {
+  Image image(2, 2);
+  Report report("t", "l");
+  report.pictures({{"one", "a caption", image}, {"two", "", image}});
+  const std::string html = report.html();
+  // A PNG file begins 89 50 4e 47 0d 0a 1a 0a.
+  EXPECT_TRUE(holds(html, "src=\"data:image/png;base64,iVBORw0KGgo"));
+  for (std::string_view loader : {"http:", "https:", "<link", "@import", "url("})
+    EXPECT_FALSE(holds(html, loader));
+}
+
+TEST(Report, RowsHaveACellForEachColumn) {
+  Report report("t", "l");
+  EXPECT_THROW(report.table("", {{"a"}, {"b"}}, {{"1"}}), ModelError);
+}
+
+}  // namespace
+}  // namespace splatscope::studies
