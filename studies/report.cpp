@@ -16,23 +16,23 @@ constexpr std::string_view kStyle = R"css(
   :root { --ink: #e6e8ea; --dim: #9aa2aa; --line: #3a4046; --paper: #16191c; --band: #1e2226; }
 }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2.5rem 1.25rem 4rem; max-width: 68rem; color: var(--ink); background: var(--paper);
+body { margin: 0 auto; padding: 2.5rem 1.25rem 4rem; max-width: 102rem; color: var(--ink); background: var(--paper);
        font: 16px/1.55 system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
 h1 { margin: 0 0 .5rem; font-size: 1.9rem; line-height: 1.2; letter-spacing: -.01em; }
 h2 { margin: 2.5rem 0 .75rem; font-size: 1.25rem; }
-p { max-width: 44rem; margin: .75rem 0; }
+h1, p { max-width: 44rem; }
+p { margin: .75rem 0; }
 .lead { color: var(--dim); font-size: 1.05rem; }
-.table { overflow-x: auto; margin: 1rem 0; }
+.caption { color: var(--dim); font-size: .92rem; margin-bottom: .25rem; }
+.table { overflow-x: auto; margin: 0 0 1rem; }
 table { border-collapse: collapse; font-size: .92rem; }
-caption { text-align: left; color: var(--dim); padding-bottom: .5rem; }
 th, td { padding: .4rem .9rem .4rem 0; text-align: left; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th { border-bottom: 2px solid var(--ink); vertical-align: bottom; }
 tbody tr:hover { background: var(--band); }
 .number { text-align: right; font-variant-numeric: tabular-nums; }
-.pictures { display: grid; gap: 1.5rem; grid-template-columns: repeat(auto-fit, minmax(min(100%, 18rem), 1fr));
-            margin: 1.25rem 0; }
-figure { margin: 0; }
-img { display: block; width: 100%; max-width: max-content; height: auto; border: 1px solid var(--line); }
+.pictures { display: flex; flex-wrap: wrap; gap: 1.5rem; margin: 1.25rem 0; }
+figure { margin: 0; max-width: 100%; }
+img { display: block; width: 100%; height: auto; }
 figcaption { margin-top: .5rem; font-size: .9rem; color: var(--dim); }
 figcaption b { color: var(--ink); }
 )css";
@@ -96,7 +96,8 @@ void Report::paragraph(std::string_view text) {
 
 void Report::table(std::string_view caption, const std::vector<Column>& columns,
                    const std::vector<std::vector<std::string>>& rows) {
-  body_ += fmt::format("<div class=\"table\"><table>\n<caption>{}</caption>\n<thead><tr>", escaped(caption));
+  body_ +=
+      fmt::format("<p class=\"caption\">{}</p>\n<div class=\"table\"><table>\n<thead><tr>", escaped(caption));
   for (const Column& column : columns)
     body_ += fmt::format("<th scope=\"col\"{}>{}</th>", attribute(column.align), escaped(column.name));
   body_ += "</tr></thead>\n<tbody>\n";
@@ -114,10 +115,9 @@ void Report::pictures(const std::vector<Picture>& pictures) {
   body_ += "<div class=\"pictures\">\n";
   for (const Picture& p : pictures)
     body_ += fmt::format(
-        "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
-        "<figcaption><b>{}</b> {}</figcaption></figure>\n",
-        p.image.width, p.image.height, escaped(p.title), base64(encode_png(p.image)), escaped(p.title),
-        escaped(p.caption));
+        "<figure style=\"width: {0}px\"><img width=\"{0}\" height=\"{1}\" alt=\"{2}\" "
+        "src=\"data:image/png;base64,{3}\"><figcaption><b>{2}</b> {4}</figcaption></figure>\n",
+        p.image.width, p.image.height, escaped(p.title), base64(encode_png(p.image)), escaped(p.caption));
   body_ += "</div>\n";
 }
 

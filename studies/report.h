@@ -33,7 +33,8 @@ class Report {
     std::string caption;
     const Image& image;
   };
-  // Side by side where the screen is wide enough; each at most at its own size.
+  // Side by side where the screen is wide enough, pixel for pixel: a scaled picture would hide or add
+  // aliasing. Only on a screen narrower than the picture it is scaled.
   void pictures(const std::vector<Picture>& pictures);
 
   std::string html() const;
