@@ -16,6 +16,9 @@ class UserError : public std::runtime_error {
       : std::runtime_error(line > 0 ? fmt::format("{}:{}: {}", file, line, message)
                                     : fmt::format("{}: {}", file, message)),
         line_(line) {}
+  // "file:line:column: ...", for programs.
+  UserError(std::string_view file, int line, int column, std::string_view message)
+      : std::runtime_error(fmt::format("{}:{}:{}: {}", file, line, column, message)), line_(line) {}
   int line() const { return line_; }
 
  private:

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "model/number/blend.h"
+
 // What a GPU of 2002 is told: buffers, textures, programs, and a list of commands. The trace file is this
 // structure on disk. Nothing here knows a surfel.
 namespace splatscope {
@@ -41,11 +43,6 @@ struct Texture {
 struct ShaderText {
   std::string name;  // "splat_ewa.vs"
   std::string text;  // assembly, vs_1_1 or ps_1_x
-};
-
-enum class BlendFactor : std::uint8_t {
-  zero, one, src_color, inv_src_color, src_alpha, inv_src_alpha,
-  dst_alpha, inv_dst_alpha, dst_color, inv_dst_color, src_alpha_saturate
 };
 
 // Fixed-function state of a draw.

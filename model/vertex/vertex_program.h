@@ -24,8 +24,8 @@ struct OutputBatch {
   alignas(64) float o[kOutputs][4][kBatch];
 };
 
-// A vs_1_1 program made ready to run on batches of vertices. Every SIMD target gives the bits of the scalar code.
-// Outputs: components that the program does not write are 0 (oD0: 1).
+// A vs_1_1 program made ready to run on batches of vertices. Every SIMD target gives the bits of the scalar
+// code. Outputs: components that the program does not write are 0 (oD0: 1).
 class VertexProgram {
  public:
   VertexProgram(const isa::Program& program, Arithmetic arithmetic);
@@ -33,7 +33,8 @@ class VertexProgram {
   VertexProgram(VertexProgram&&) noexcept;
   VertexProgram& operator=(VertexProgram&&) noexcept;
 
-  // Runs vertices 0..count-1 (count <= kBatch). Constants from c0; those not given are 0; `def` in the program wins.
+  // Runs vertices 0..count-1 (count <= kBatch). Constants from c0; those not given are 0; `def` in the
+  // program wins.
   void run(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out, int count) const;
 
   // The same by the plain scalar interpreter that the SIMD code is checked against.

@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/error.h"
+#include "model/isa/program.h"
+
+namespace splatscope::isa {
+namespace {
+
+std::string error_of(const std::string& text) {
+  try {
+    load(text, "a.vs");
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Assembler, ReadsOperandsMasksAndNegation) {
+  const Program program =
+      assemble("vs.1.1 // version\n; comment\nMAD r1.xz, -v0.wzy, c[3 + a0.x].g, R0 /* two\nlines */\n", "a");
+  ASSERT_EQ(program.instructions.size(), 1u);
+  const Instruction& mad = program.instructions[0];
+  EXPECT_EQ(mad.opcode, Opcode::mad);
+  EXPECT_EQ(mad.line, 3);
+  EXPECT_EQ(mad.destination, (Destination{RegisterFile::temporary, 1, 0x5}));
+  EXPECT_EQ(mad.sources[0], (Source{RegisterFile::input, 0, {3, 2, 1, 1}, true}));
+  EXPECT_EQ(mad.sources[1], (Source{RegisterFile::constant, 3, {1, 1, 1, 1}, false, true}));
+  EXPECT_EQ(mad.sources[2], (Source{RegisterFile::temporary, 0}));
+}
+
+TEST(Assembler, ReadsPixelModifiersAndCoissue) {
+  const Program program =
+      assemble("ps_1_4\nmul_x2_sat r0.rgb, 1 - r1, r2_bx2.a\n+ mov_d8 r3.a, -v0_bias\n", "a");
+  ASSERT_EQ(program.instructions.size(), 2u);
+  const Instruction& mul = program.instructions[0];
+  EXPECT_EQ(mul.destination, (Destination{RegisterFile::temporary, 0, 0x7, 1, true}));
+  EXPECT_EQ(mul.sources[0].modifier, SourceModifier::invert);
+  EXPECT_EQ(mul.sources[1].modifier, SourceModifier::bx2);
+  EXPECT_EQ(mul.sources[1].swizzle, (std::array<std::uint8_t, 4>{3, 3, 3, 3}));
+  EXPECT_FALSE(mul.coissue);
+  EXPECT_TRUE(program.instructions[1].coissue);
+  EXPECT_EQ(program.instructions[1].destination.shift, -3);
+  EXPECT_TRUE(program.instructions[1].sources[0].negate);
+}
+
+TEST(Assembler, ReadsDefinitionsAndDeclarations) {
+  const Program program = assemble("vs_1_1\ndef c3, 1, -.5, 2e3f, +0\ndcl_texcoord2 v7\nmov oPos, v7\n", "a");
+  ASSERT_EQ(program.definitions.size(), 1u);
+  EXPECT_EQ(program.definitions[0].index, 3);
+  EXPECT_EQ(program.definitions[0].values, (std::array<float, 4>{1, -0.5f, 2000, 0}));
+  ASSERT_EQ(program.declarations.size(), 1u);
+  EXPECT_EQ(program.declarations[0].usage, 5);
+  EXPECT_EQ(program.declarations[0].usage_index, 2);
+}
+
+TEST(Assembler, CountsSlotsWithMacrosAtTheirExpansion) {
+  EXPECT_EQ(
+      slot_count(load("vs_1_1\ndef c4, 0, 0, 0, 0\nm4x4 oPos, v0, c0\nexp r0, v0.x\nfrc r0.xy, v0\n", "a")),
+      17);
+}
+
+TEST(Assembler, ErrorsNameFileLineColumnAndRule) {
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0\n  foo r0, v0\n"),
+            "a.vs:3:3: unknown instruction 'foo' in vs_1_1");
+  EXPECT_EQ(error_of("mov oPos, v0\n"),
+            "a.vs:1:1: 'mov' is not a version, expected vs_1_1 or ps_1_1 to ps_1_4 first");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos v0\n"), "a.vs:2:10: expected ',' and another operand");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0 v1\n"), "a.vs:2:14: expected the end of the line");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos.yx, v0\n"),
+            "a.vs:2:10: '.yx' is not a write mask, expected letters of xyzw or rgba in that order");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0 /* \n"), "a.vs:2:14: this comment does not end, expected */");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0\nadd r0, c0, c1\n"),
+            "a.vs:3:1: 2 different c# registers in one instruction, vs_1_1 has 1 read port");
+  EXPECT_EQ(error_of(""), "a.vs:1:1: '' is not a version, expected vs_1_1 or ps_1_1 to ps_1_4 first");
+}
+
+}  // namespace
+}  // namespace splatscope::isa

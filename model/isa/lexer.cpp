@@ -1,0 +1,127 @@
+#include "model/isa/lexer.h"
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "model/error.h"
+
+namespace splatscope::isa {
+namespace {
+
+bool is_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
+}  // namespace
+
+Lexer::Lexer(std::string_view text, std::string_view name) : name_(name), text_(text) {
+  enum class In { code, line_comment, block_comment } in = In::code;
+  int line = 1, column = 1;
+  Place opened{1, 1};
+  for (std::size_t i = 0; i < text_.size(); ++i, ++column) {
+    char& c = text_[i];
+    const char next = i + 1 < text_.size() ? text_[i + 1] : '\0';
+    if (c == '\n') {
+      if (in == In::line_comment) in = In::code;
+      ++line;
+      column = 0;
+      continue;
+    }
+    switch (in) {
+      case In::code:
+        if (c == ';' || c == '#' || (c == '/' && next == '/')) {
+          in = In::line_comment;
+          c = ' ';
+        } else if (c == '/' && next == '*') {
+          in = In::block_comment;
+          opened = {line, column};
+          text_[i] = text_[i + 1] = ' ';
+          ++i, ++column;
+        } else {
+          c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        }
+        break;
+      case In::line_comment:
+        c = ' ';
+        break;
+      case In::block_comment:
+        if (c == '*' && next == '/') {
+          in = In::code;
+          text_[i + 1] = ' ';
+          c = ' ';
+          ++i, ++column;
+        } else {
+          c = ' ';
+        }
+        break;
+    }
+  }
+  if (in == In::block_comment) fail(opened, "this comment does not end, expected */");
+}
+
+void Lexer::advance() {
+  if (text_[position_] == '\n') {
+    ++line_;
+    column_ = 0;
+  }
+  ++position_;
+  ++column_;
+}
+
+void Lexer::skip_blanks() {
+  while (!at_end() && is_blank(text_[position_])) advance();
+}
+
+void Lexer::skip_blank_lines() {
+  while (!at_end() && (is_blank(text_[position_]) || text_[position_] == '\n')) advance();
+}
+
+bool Lexer::accept(char wanted) {
+  skip_blanks();
+  if (peek() != wanted || at_end()) return false;
+  advance();
+  return true;
+}
+
+std::string Lexer::word() {
+  skip_blanks();
+  std::string result;
+  for (; !at_end() && is_word(text_[position_]); advance()) result += text_[position_];
+  return result;
+}
+
+std::string Lexer::version_word() {
+  skip_blanks();
+  std::string result;
+  for (; !at_end() && (is_word(text_[position_]) || text_[position_] == '.'); advance())
+    result += text_[position_];
+  return result;
+}
+
+std::optional<float> Lexer::number() {
+  skip_blanks();
+  bool negative = false;
+  if (peek() == '-' || peek() == '+') {
+    negative = peek() == '-';
+    advance();
+  }
+  skip_blanks();
+  if (!std::isdigit(static_cast<unsigned char>(peek())) && peek() != '.') return std::nullopt;
+  float value = 0;
+  const char* begin = text_.data() + position_;
+  const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
+  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  for (const char* c = begin; c != end; ++c) advance();
+  if (peek() == 'f') advance();
+  return negative ? -value : value;
+}
+
+void Lexer::fail(Place where, std::string_view message) const {
+  throw UserError(name_, where.line, where.column, message);
+}
+
+}  // namespace splatscope::isa

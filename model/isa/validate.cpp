@@ -1,0 +1,112 @@
+#include "model/isa/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "model/error.h"
+#include "model/isa/opcode.h"
+#include "model/isa/register_names.h"
+#include "model/isa/rules.h"
+
+namespace splatscope::isa {
+
+void reject(const Program& program, const Instruction& at, std::string_view rule) {
+  throw UserError(program.name, at.line, at.column, rule);
+}
+
+unsigned components_read(const Instruction& instruction, int source) {
+  const unsigned mask = instruction.destination.mask;
+  const auto& swizzle = instruction.sources[static_cast<std::size_t>(source)].swizzle;
+  unsigned lanes = mask;  // of the operand after its swizzle
+  switch (instruction.opcode) {
+    case Opcode::dp3:
+    case Opcode::texm3x2pad:
+    case Opcode::texm3x2tex:
+    case Opcode::texm3x2depth:
+    case Opcode::texm3x3pad:
+    case Opcode::texm3x3tex:
+    case Opcode::texm3x3spec:
+    case Opcode::texm3x3vspec:
+    case Opcode::texm3x3:
+    case Opcode::texdp3:
+    case Opcode::texdp3tex:
+    case Opcode::texcrd:
+    case Opcode::texld:
+    case Opcode::texreg2rgb:
+      lanes = 0x7;
+      break;
+    case Opcode::dp4:
+      lanes = 0xf;
+      break;
+    case Opcode::rcp:
+    case Opcode::rsq:
+    case Opcode::expp:
+    case Opcode::logp:
+    case Opcode::exp:
+    case Opcode::log:
+      lanes = 0x1;
+      break;
+    case Opcode::lit:
+      lanes = (mask & 0x2 ? 0x1u : 0u) | (mask & 0x4 ? 0xbu : 0u);
+      break;
+    case Opcode::dst:
+      lanes = mask & (source == 0 ? 0x6u : 0xau);
+      break;
+    case Opcode::m4x4:
+    case Opcode::m4x3:
+      lanes = 0xf;
+      break;
+    case Opcode::m3x4:
+    case Opcode::m3x3:
+    case Opcode::m3x2:
+      lanes = 0x7;
+      break;
+    case Opcode::bem:
+      lanes = 0x3;
+      break;
+    case Opcode::texbem:
+    case Opcode::texbeml:
+      lanes = 0x3;
+      break;
+    case Opcode::texreg2ar:
+      lanes = 0x9;
+      break;
+    case Opcode::texreg2gb:
+      lanes = 0x6;
+      break;
+    default:
+      break;
+  }
+  unsigned components = 0;
+  for (unsigned lane = 0; lane < 4; ++lane)
+    if (lanes & (1u << lane)) components |= 1u << swizzle[lane];
+  return components;
+}
+
+void check_read_ports(const Program& program, const Instruction& instruction, RegisterFile file, int ports) {
+  std::vector<std::pair<bool, int>> distinct;  // relative or not, index
+  for (int i = 0; i < instruction.source_count; ++i) {
+    const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+    const std::pair<bool, int> key{source.relative, source.index};
+    if (source.file == file && std::ranges::find(distinct, key) == distinct.end()) distinct.push_back(key);
+  }
+  if (static_cast<int>(distinct.size()) <= ports) return;
+  const std::string name = register_name(file, 0).substr(0, 1) + "#";
+  reject(program, instruction,
+         fmt::format("{} different {} registers in one instruction, {} has {} read port{}", distinct.size(),
+                     name, to_string(program.version), ports, ports == 1 ? "" : "s"));
+}
+
+void validate(const Program& program) {
+  if (program.instructions.empty())
+    throw UserError(program.name, 1, 1, "a program has at least one instruction");
+  for (const Instruction& instruction : program.instructions)
+    if (find_opcode(program.version, instruction.opcode) == nullptr)
+      reject(program, instruction, fmt::format("{} has no such instruction", to_string(program.version)));
+  program.version.kind == ShaderKind::vertex ? validate_vertex(program) : validate_pixel(program);
+}
+
+}  // namespace splatscope::isa

@@ -1,0 +1,289 @@
+#include "model/vertex/steps.h"
+
+#include <bit>
+#include <cmath>
+
+#include "model/error.h"
+#include "model/isa/opcode.h"
+#include "model/number/ieee.h"
+
+namespace splatscope::vertex {
+namespace {
+
+constexpr std::int32_t kOutOfRange = -0x10000;
+
+Operation operation_of(isa::Opcode opcode) {
+  using enum isa::Opcode;
+  switch (opcode) {
+    case mov:
+      return Operation::move;
+    case add:
+    case sub:
+      return Operation::add;
+    case mul:
+      return Operation::multiply;
+    case mad:
+      return Operation::multiply_add;
+    case dp3:
+    case m3x4:
+    case m3x3:
+    case m3x2:
+      return Operation::dot3;
+    case dp4:
+    case m4x4:
+    case m4x3:
+      return Operation::dot4;
+    case min:
+      return Operation::minimum;
+    case max:
+      return Operation::maximum;
+    case slt:
+      return Operation::less;
+    case sge:
+      return Operation::greater_equal;
+    case rcp:
+      return Operation::reciprocal;
+    case rsq:
+      return Operation::reciprocal_sqrt;
+    case expp:
+      return Operation::expp;
+    case logp:
+      return Operation::logp;
+    case lit:
+      return Operation::lit;
+    case dst:
+      return Operation::distance;
+    case exp:
+      return Operation::exponent;
+    case log:
+      return Operation::logarithm;
+    case frc:
+      return Operation::fraction;
+    default:
+      throw ModelError("not an instruction of vertex programs");
+  }
+}
+
+void set_destination(const isa::Destination& destination, Step& step) {
+  using enum isa::RegisterFile;
+  step.mask = destination.mask;
+  step.destination_place = Place::output;
+  switch (destination.file) {
+    case temporary:
+      step.destination_place = Place::temporary;
+      step.destination_index = destination.index;
+      return;
+    case position_out:
+      step.destination_index = oPos;
+      return;
+    case color_out:
+      step.destination_index = static_cast<std::uint16_t>(oD0 + destination.index);
+      return;
+    case texcoord_out:
+      step.destination_index = static_cast<std::uint16_t>(oT0 + destination.index);
+      return;
+    case fog_out:
+      step.destination_index = oFog;
+      return;
+    case point_size_out:
+      step.destination_index = oPts;
+      return;
+    case address:
+      step.operation = Operation::load_address;
+      step.destination_place = Place::address;
+      return;
+    default:
+      throw ModelError("not a destination of vertex programs");
+  }
+}
+
+// A source's place; a relative constant becomes a gather before the step that reads it.
+StepSource make_source(const isa::Source& source, int row, std::vector<Step>& steps) {
+  StepSource result;
+  result.swizzle = source.swizzle;
+  result.negate = source.negate;
+  result.index = static_cast<std::uint16_t>(source.index + row);
+  switch (source.file) {
+    case isa::RegisterFile::temporary:
+      result.place = Place::temporary;
+      return result;
+    case isa::RegisterFile::input:
+      result.place = Place::input;
+      return result;
+    case isa::RegisterFile::constant:
+      break;
+    default:
+      throw ModelError("not a source of vertex programs");
+  }
+  if (!source.relative) {
+    result.place = Place::constant;
+    return result;
+  }
+  Step gather;
+  gather.operation = Operation::gather_constant;
+  gather.destination_place = Place::scratch;
+  gather.constant_offset = result.index;
+  steps.push_back(gather);
+  result.place = Place::scratch;
+  result.index = 0;
+  return result;
+}
+
+void append(const isa::Instruction& instruction, std::vector<Step>& steps) {
+  const int rows = isa::matrix_shape(instruction.opcode).rows;
+  for (int row = 0; row < std::max(rows, 1); ++row) {
+    Step step;
+    step.operation = operation_of(instruction.opcode);
+    set_destination(instruction.destination, step);
+    if (rows > 0) step.mask = static_cast<std::uint8_t>(step.mask & (1u << row));
+    if (step.mask == 0) continue;
+    step.source_count = static_cast<std::uint8_t>(instruction.source_count);
+    for (std::size_t i = 0; i < step.source_count; ++i)
+      step.sources[i] = make_source(instruction.sources[i], i == 1 ? row : 0, steps);
+    if (instruction.opcode == isa::Opcode::sub) step.sources[1].negate = !step.sources[1].negate;
+    steps.push_back(step);
+  }
+}
+
+float negated(float value, std::uint32_t sign) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) ^ sign);
+}
+
+Operand resolve_source(const StepSource& source, const Workspace& workspace, const InputBatch& in) {
+  Operand operand;
+  operand.sign = source.negate ? 0x80000000u : 0u;
+  operand.stride = source.place == Place::constant ? 0 : 1;
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const std::size_t component = source.swizzle[lane];
+    switch (source.place) {
+      case Place::temporary:
+        operand.component[lane] = workspace.temporaries[source.index][component];
+        break;
+      case Place::input:
+        operand.component[lane] = in.v[source.index][component];
+        break;
+      case Place::constant:
+        operand.component[lane] = workspace.broadcast[source.index][component];
+        break;
+      default:
+        operand.component[lane] = workspace.scratch[component];
+        break;
+    }
+  }
+  return operand;
+}
+
+Vec4 evaluate_ieee(Operation operation, const std::array<Vec4, 3>& sources) {
+  const auto& [a, b, c] = sources;
+  const auto each = [&](auto&& function) {
+    return Vec4{function(std::size_t{0}), function(std::size_t{1}), function(std::size_t{2}),
+                function(std::size_t{3})};
+  };
+  const auto all = [](float value) { return Vec4{value, value, value, value}; };
+  switch (operation) {
+    case Operation::move:
+      return a;
+    case Operation::add:
+      return each([&](std::size_t i) { return ieee::add(a[i], b[i]); });
+    case Operation::multiply:
+      return each([&](std::size_t i) { return ieee::multiply(a[i], b[i]); });
+    case Operation::multiply_add:
+      return each([&](std::size_t i) { return ieee::multiply_add(a[i], b[i], c[i]); });
+    case Operation::dot3:
+      return all(ieee::dot3(a, b));
+    case Operation::dot4:
+      return all(ieee::dot4(a, b));
+    case Operation::minimum:
+      return each([&](std::size_t i) { return ieee::minimum(a[i], b[i]); });
+    case Operation::maximum:
+      return each([&](std::size_t i) { return ieee::maximum(a[i], b[i]); });
+    case Operation::less:
+      return each([&](std::size_t i) { return ieee::less(a[i], b[i]); });
+    case Operation::greater_equal:
+      return each([&](std::size_t i) { return ieee::greater_equal(a[i], b[i]); });
+    case Operation::reciprocal:
+      return all(ieee::reciprocal(a[0]));
+    case Operation::reciprocal_sqrt:
+      return all(ieee::reciprocal_sqrt(a[0]));
+    case Operation::expp:
+      return ieee::expp(a[0]);
+    case Operation::logp:
+      return ieee::logp(a[0]);
+    case Operation::lit:
+      return ieee::lit(a);
+    case Operation::distance:
+      return ieee::distance(a, b);
+    case Operation::exponent:
+      return all(ieee::exp2(a[0]));
+    case Operation::logarithm:
+      return all(ieee::log2_magnitude(a[0]));
+    case Operation::fraction:
+      return each([&](std::size_t i) { return ieee::fraction(a[i]); });
+    case Operation::load_address:
+    case Operation::gather_constant:
+      break;
+  }
+  throw ModelError("not an arithmetic operation");
+}
+
+}  // namespace
+
+std::vector<Step> make_steps(const isa::Program& program) {
+  std::vector<Step> steps;
+  for (const isa::Instruction& instruction : program.instructions)
+    if (instruction.opcode != isa::Opcode::nop) append(instruction, steps);
+  return steps;
+}
+
+Call resolve(const Step& step, Workspace& workspace, const InputBatch& in, OutputBatch& out) {
+  Call call;
+  call.operation = step.operation;
+  call.mask = step.mask;
+  call.destination = step.destination_place == Place::temporary
+                         ? workspace.temporaries[step.destination_index][0]
+                         : out.o[step.destination_index][0];
+  for (std::size_t i = 0; i < step.source_count; ++i)
+    call.sources[i] = resolve_source(step.sources[i], workspace, in);
+  return call;
+}
+
+void run_address_step(const Step& step, Workspace& workspace, const InputBatch& in, int count) {
+  if (step.operation == Operation::load_address) {
+    const Operand source = resolve_source(step.sources[0], workspace, in);
+    for (int lane = 0; lane < count; ++lane) {
+      const float value = std::floor(
+          negated(source.component[0][static_cast<std::size_t>(lane) * source.stride], source.sign));
+      const bool in_reach = value >= -4096.0f && value <= 4096.0f;
+      workspace.address[lane] = in_reach ? static_cast<std::int32_t>(value) : kOutOfRange;
+    }
+    return;
+  }
+  for (int lane = 0; lane < count; ++lane) {
+    const std::int32_t index = workspace.address[lane] + step.constant_offset;
+    const Vec4 value =
+        index >= 0 && index < kConstants ? workspace.constants[static_cast<std::size_t>(index)] : Vec4{};
+    for (std::size_t component = 0; component < 4; ++component)
+      workspace.scratch[component][lane] = value[component];
+  }
+}
+
+Vec4 evaluate(Operation operation, Arithmetic, const std::array<Vec4, 3>& sources) {
+  return evaluate_ieee(operation, sources);
+}
+
+void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last) {
+  for (int lane = first; lane < last; ++lane) {
+    std::array<Vec4, 3> sources{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t component = 0; component < 4; ++component)
+        if (const float* values = call.sources[i].component[component])
+          sources[i][component] =
+              negated(values[static_cast<std::size_t>(lane) * call.sources[i].stride], call.sources[i].sign);
+    const Vec4 result = evaluate(call.operation, arithmetic, sources);
+    for (std::size_t component = 0; component < 4; ++component)
+      if (call.mask & (1u << component))
+        call.destination[component * kBatch + static_cast<std::size_t>(lane)] = result[component];
+  }
+}
+
+}  // namespace splatscope::vertex

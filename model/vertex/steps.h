@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "model/isa/program.h"
+#include "model/vertex/vertex_program.h"
+
+// A vs_1_1 program as the executors see it: macros expanded, relative addresses made explicit, registers as
+// places in a workspace. Internal to model/vertex.
+namespace splatscope::vertex {
+
+enum class Operation : std::uint8_t {
+  move,
+  add,
+  multiply,
+  multiply_add,
+  dot3,
+  dot4,
+  minimum,
+  maximum,
+  less,
+  greater_equal,  // SIMD
+  reciprocal,
+  reciprocal_sqrt,
+  expp,
+  logp,
+  lit,
+  distance,
+  exponent,
+  logarithm,
+  fraction,
+  load_address,    // a0.x of each vertex from source 0, x
+  gather_constant  // c[a0.x + constant_offset] into the scratch register
+};
+
+// A register's place: which array of the workspace, and its index there.
+enum class Place : std::uint8_t { temporary, input, constant, scratch, output, address };
+
+struct StepSource {
+  Place place = Place::temporary;
+  std::uint16_t index = 0;
+  std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};
+  bool negate = false;
+};
+
+struct Step {
+  Operation operation = Operation::move;
+  Place destination_place = Place::temporary;
+  std::uint16_t destination_index = 0;
+  std::uint8_t mask = 0xf;
+  std::uint16_t constant_offset = 0;  // of gather_constant
+  std::uint8_t source_count = 0;
+  std::array<StepSource, 3> sources;
+};
+
+std::vector<Step> make_steps(const isa::Program& program);
+
+inline constexpr int kTemporaries = 12;
+inline constexpr int kConstants = 96;
+inline constexpr int kBroadcast = 16;  // floats of the widest SIMD register
+
+// The registers of one batch while it runs.
+struct Workspace {
+  alignas(64) float temporaries[kTemporaries][4][kBatch];
+  alignas(64) float scratch[4][kBatch];
+  alignas(64) float broadcast[kConstants][4][kBroadcast];  // constants, once a SIMD lane
+  alignas(64) std::int32_t address[kBatch];
+  std::array<Vec4, kConstants> constants;
+};
+
+// A step with its registers found: what the SIMD code runs.
+struct Operand {
+  std::array<const float*, 4> component{};  // after the swizzle
+  std::size_t stride = 1;                   // 0: a constant, the same kBroadcast floats for every vertex
+  std::uint32_t sign = 0;                   // 0x80000000 where negated
+};
+
+struct Call {
+  Operation operation = Operation::move;
+  std::uint8_t mask = 0xf;
+  float* destination = nullptr;  // [4][kBatch]
+  std::array<Operand, 3> sources;
+};
+
+Call resolve(const Step& step, Workspace& workspace, const InputBatch& in, OutputBatch& out);
+
+// load_address and gather_constant, which no SIMD code needs, for vertices 0..count-1.
+void run_address_step(const Step& step, Workspace& workspace, const InputBatch& in, int count);
+
+// All four components of one result in the given arithmetic: the scalar reference. Components that do not
+// belong to the operation's result are unspecified.
+Vec4 evaluate(Operation operation, Arithmetic arithmetic, const std::array<Vec4, 3>& sources);
+
+// One call for vertices first..last-1 by `evaluate`.
+void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last);
+
+// One call for vertices 0..count-1 (rounded up to whole SIMD registers) on the best SIMD target of this
+// machine.
+void run_simd_ieee(const Call& call, int count);
+
+}  // namespace splatscope::vertex

@@ -1,0 +1,58 @@
+#include "model/vertex/vertex_fetch.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+namespace splatscope::vertex {
+namespace {
+
+// The second of two vertices of one attribute, at offset 4 of a 24-byte vertex.
+template <typename T, std::size_t N>
+Vec4 fetched(VertexFormat format, const std::array<T, N>& elements) {
+  std::vector<std::byte> buffer(2 * 24, std::byte{0xee});
+  std::memcpy(buffer.data() + 24 + 4, elements.data(), sizeof(elements));
+  EXPECT_EQ(size_of(format), sizeof(elements));
+  const VertexAttribute attribute{3, format, 4};
+  const std::uint32_t number = 1;
+  const auto batch = std::make_unique<InputBatch>();
+  fetch({&attribute, 1}, buffer, 24, {&number, 1}, *batch);
+  const auto& v3 = batch->v[3];
+  return {v3[0][0], v3[1][0], v3[2][0], v3[3][0]};
+}
+
+TEST(VertexFetch, FloatsAreFilledUpWithZeroZeroZeroOne) {
+  EXPECT_EQ(fetched(VertexFormat::float1, std::array{2.5f}), (Vec4{2.5f, 0, 0, 1}));
+  EXPECT_EQ(fetched(VertexFormat::float2, std::array{2.5f, -1.0f}), (Vec4{2.5f, -1, 0, 1}));
+  EXPECT_EQ(fetched(VertexFormat::float3, std::array{2.5f, -1.0f, 9.0f}), (Vec4{2.5f, -1, 9, 1}));
+  EXPECT_EQ(fetched(VertexFormat::float4, std::array{2.5f, -1.0f, 9.0f, 4.0f}), (Vec4{2.5f, -1, 9, 4}));
+}
+
+TEST(VertexFetch, IntegersAreConvertedAsTheyAre) {
+  EXPECT_EQ(fetched(VertexFormat::ubyte4, std::array<std::uint8_t, 4>{0, 1, 128, 255}),
+            (Vec4{0, 1, 128, 255}));
+  EXPECT_EQ(fetched(VertexFormat::short2, std::array<std::int16_t, 2>{-32768, 32767}),
+            (Vec4{-32768, 32767, 0, 1}));
+  EXPECT_EQ(fetched(VertexFormat::short4, std::array<std::int16_t, 4>{1, -2, 3, -4}), (Vec4{1, -2, 3, -4}));
+}
+
+TEST(VertexFetch, ColorIsBlueFirstInMemoryAndOver255) {
+  const Vec4 color = fetched(VertexFormat::d3dcolor, std::array<std::uint8_t, 4>{10, 20, 255, 51});
+  EXPECT_EQ(color, (Vec4{1.0f, 20 / 255.0f, 10 / 255.0f, 51 / 255.0f}));
+}
+
+TEST(VertexFetch, InputsWithoutAnAttributeHaveTheDefault) {
+  const auto batch = std::make_unique<InputBatch>();
+  const std::array<std::uint32_t, 3> numbers{0, 1, 2};
+  fetch({}, {}, 0, numbers, *batch);
+  for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+    EXPECT_EQ(batch->v[15][0][lane], 0.0f);
+    EXPECT_EQ(batch->v[15][3][lane], 1.0f);
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::vertex

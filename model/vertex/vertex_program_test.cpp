@@ -1,0 +1,166 @@
+#include "model/vertex/vertex_program.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "model/isa/opcode.h"
+
+namespace splatscope::vertex {
+namespace {
+
+struct Batches {
+  std::unique_ptr<InputBatch> in = std::make_unique<InputBatch>();
+  std::unique_ptr<OutputBatch> out = std::make_unique<OutputBatch>();
+};
+
+// Vertex 0's `output` of a program whose v0 is (1, 2, 3, 4) and c0..c3 are (10,20,30,40), (11, ...), ...
+Vec4 run(const std::string& text, Output output) {
+  const VertexProgram program(isa::load("vs_1_1\n" + text, "test"), Arithmetic::ieee);
+  Batches batch;
+  std::memset(batch.in.get(), 0, sizeof(InputBatch));
+  for (int c = 0; c < 4; ++c) batch.in->v[0][c][0] = static_cast<float>(c + 1);
+  std::vector<Vec4> constants;
+  for (int i = 0; i < 4; ++i)
+    constants.push_back({10.0f + static_cast<float>(i), 20.0f + static_cast<float>(i),
+                         30.0f + static_cast<float>(i), 40.0f + static_cast<float>(i)});
+  program.run(constants, *batch.in, *batch.out, 1);
+  const auto& o = batch.out->o[output];
+  return {o[0][0], o[1][0], o[2][0], o[3][0]};
+}
+
+TEST(VertexProgram, SwizzleNegationAndMask) {
+  EXPECT_EQ(run("mov oPos, -v0.wzyx", oPos), (Vec4{-4, -3, -2, -1}));
+  EXPECT_EQ(run("mov r0, v0\nmov r0.yw, c1.x\nmov oPos, r0", oPos), (Vec4{1, 11, 3, 11}));
+}
+
+TEST(VertexProgram, ADestinationMayBeItsOwnSwizzledSource) {
+  EXPECT_EQ(run("mov r0, v0\nadd r0, r0.wzyx, r0\nmov oPos, r0", oPos), (Vec4{5, 5, 5, 5}));
+  EXPECT_EQ(run("mov r0, v0\nmov r0, r0.yzwx\nmov oPos, r0", oPos), (Vec4{2, 3, 4, 1}));
+}
+
+TEST(VertexProgram, MatrixMacros) {
+  EXPECT_EQ(run("m4x4 oPos, v0, c0", oPos), (Vec4{300, 310, 320, 330}));
+  EXPECT_EQ(run("m3x2 r0.xy, v0, c2\nmov oPos, r0.xyxy", oPos), (Vec4{152, 158, 152, 158}));
+}
+
+TEST(VertexProgram, RelativeAddressesFloorAndReadZeroOutside) {
+  EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.x\nmov oPos, c[a0.x + 1]", oPos),
+            (Vec4{12, 22, 32, 42}));
+  EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.y\nmov oPos, c[a0.x + 2]", oPos),
+            (Vec4{10, 20, 30, 40}));
+  EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.y\nmov oPos, c[a0.x + 1]", oPos),
+            (Vec4{0, 0, 0, 0}));
+  EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.w\nmov oPos, c[a0.x]", oPos), (Vec4{0, 0, 0, 0}));
+  EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.z\nmov oPos, c[a0.x + 95]", oPos),
+            (Vec4{0, 0, 0, 0}));
+}
+
+TEST(VertexProgram, WhatIsNotWrittenIsZeroAndTheDiffuseColourOne) {
+  EXPECT_EQ(run("mov oPos, v0", oD0), (Vec4{1, 1, 1, 1}));
+  EXPECT_EQ(run("mov oPos, v0\nmov oD0.a, v0.x", oD0), (Vec4{1, 1, 1, 1}));
+  EXPECT_EQ(run("mov oPos, v0\nmov oT0.xy, v0", oT0), (Vec4{1, 2, 0, 0}));
+}
+
+// A random valid program over r0..r5, v0, c0..c7.
+class RandomProgram {
+ public:
+  explicit RandomProgram(std::mt19937& random) : random_(random) {}
+
+  std::string text() {
+    std::string result = "vs_1_1\nmov a0.x, c0.x\n";
+    for (int r = 0; r < 6; ++r) result += fmt::format("mov r{}, {}\n", r, r % 2 ? "v0" : "c1");
+    for (int i = 0; i < 40; ++i) result += instruction();
+    for (int r = 0; r < 6; ++r) result += fmt::format("mov oT{}, r{}\n", r, r);
+    return result + "mov oPos, r0\n";
+  }
+
+ private:
+  int pick(int below) { return static_cast<int>(random_() % static_cast<unsigned>(below)); }
+
+  std::string swizzle(int letters) {
+    std::string result = ".";
+    for (int i = 0; i < letters; ++i) result += "xyzw"[pick(4)];
+    return result;
+  }
+
+  std::string source(int kind, bool scalar) {
+    const std::string names[] = {fmt::format("r{}", pick(6)), "v0", constant_};
+    return (pick(2) ? "-" : "") + names[kind] + (scalar ? swizzle(1) : pick(2) ? swizzle(4) : "");
+  }
+
+  std::string instruction() {
+    const isa::OpcodeInfo* info = nullptr;
+    while (info == nullptr || info->opcode == isa::Opcode::nop || isa::matrix_shape(info->opcode).rows > 0)
+      info = &isa::opcode_table()[static_cast<std::size_t>(pick(26))];
+    using enum isa::Opcode;
+    const auto op = info->opcode;
+    const bool scalar = op == rcp || op == rsq || op == exp || op == expp || op == log || op == logp;
+    constant_ = pick(4) ? fmt::format("c{}", pick(8)) : fmt::format("c[a0.x + {}]", pick(8));
+    const std::string_view masks[] = {"", ".x", ".yz", ".xw", ".yzw", ".xy"};
+    std::string result = fmt::format("{} r{}{}", info->name, pick(6), op == frc ? ".xy" : masks[pick(6)]);
+    for (int i = 0; i < info->source_count; ++i) result += ", " + source(pick(3), scalar);
+    return result + "\n";
+  }
+
+  std::mt19937& random_;
+  std::string constant_;
+};
+
+// Half of them special: zeros, denormals, infinities, NaN, powers of two, extremes.
+float random_value(std::mt19937& random) {
+  constexpr std::uint32_t kSpecial[] = {0x00000000, 0x80000000, 0x00000001, 0x807fffff, 0x00800000,
+                                        0x7f7fffff, 0xff7fffff, 0x7f800000, 0xff800000, 0x7fc00000,
+                                        0xffc12345, 0x7f800001, 0x3f800000, 0xbf800000, 0x3f7fffff,
+                                        0x40000000, 0x43000000, 0xc3160000};
+  switch (random() % 4) {
+    case 0:
+      return std::bit_cast<float>(kSpecial[random() % std::size(kSpecial)]);
+    case 1:
+      return std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    default:
+      return std::uniform_real_distribution<float>(-4, 4)(random);
+  }
+}
+
+TEST(VertexProgram, EverySimdTargetGivesTheBitsOfTheScalarInterpreter) {
+  const unsigned seed = std::random_device{}();
+  std::mt19937 random(seed);
+  const std::int64_t available = hwy::SupportedTargets() & HWY_TARGETS;
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::string text = RandomProgram(random).text();
+    const VertexProgram program(isa::assemble(text, "random"), Arithmetic::ieee);
+    Batches batch;
+    for (auto& component : batch.in->v[0])
+      for (float& value : component) value = random_value(random);
+    std::vector<Vec4> constants(8);
+    for (Vec4& constant : constants)
+      for (float& value : constant) value = random_value(random);
+    const auto scalar = std::make_unique<OutputBatch>();
+    const int count = 1 + static_cast<int>(random() % kBatch);
+    program.run_scalar(constants, *batch.in, *scalar, count);
+    for (std::int64_t targets = available; targets != 0; targets &= targets - 1) {
+      hwy::SetSupportedTargetsForTest(targets & -targets);
+      program.run(constants, *batch.in, *batch.out, count);
+      for (int o = 0; o < kOutputs; ++o)
+        for (int c = 0; c < 4; ++c)
+          for (int lane = 0; lane < count; ++lane)
+            ASSERT_EQ(std::bit_cast<std::uint32_t>(batch.out->o[o][c][lane]),
+                      std::bit_cast<std::uint32_t>(scalar->o[o][c][lane]))
+                << "seed " << seed << ", target " << hwy::TargetName(targets & -targets) << ", output " << o
+                << '.' << c << ", vertex " << lane << '\n'
+                << text;
+    }
+    hwy::SetSupportedTargetsForTest(0);
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::vertex
