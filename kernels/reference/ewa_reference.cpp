@@ -1,0 +1,193 @@
+#include "kernels/reference/ewa_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace splatscope::kernels {
+namespace {
+
+// A splat that may count at a pixel or not.
+struct Tie {
+  std::size_t pixel = 0;
+  double weight = 0;
+  glm::dvec3 color{};
+};
+
+struct PixelBox {
+  int left, top, right, bottom;  // right and bottom excluded
+};
+
+// Pixels whose centres may lie in the picture of the parallelogram o +- a +- b (camera space), cut at the
+// near plane.
+PixelBox bounding_box(const View& view, const glm::dvec3& o, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 corners[4] = {o - a - b, o + a - b, o + a + b, o - a + b};
+  glm::dvec2 low(std::numeric_limits<double>::infinity());
+  glm::dvec2 high(-std::numeric_limits<double>::infinity());
+  const auto add = [&](const glm::dvec3& p) {
+    const glm::dvec2 window = view.window(p);
+    low = glm::min(low, window);
+    high = glm::max(high, window);
+  };
+  for (int i = 0; i < 4; ++i) {
+    const glm::dvec3& p = corners[i];
+    const glm::dvec3& next = corners[(i + 1) % 4];
+    const double before = p.z - view.near_plane;
+    const double after = next.z - view.near_plane;
+    if (before >= 0) add(p);
+    if ((before < 0) != (after < 0)) add(p + (next - p) * (before / (before - after)));
+  }
+  const auto pixel = [](double coordinate, int size) {
+    return static_cast<int>(std::clamp(std::floor(coordinate), 0.0, static_cast<double>(size)));
+  };
+  return {pixel(low.x, view.width), pixel(low.y, view.height), pixel(high.x + 1, view.width),
+          pixel(high.y + 1, view.height)};
+}
+
+// Linear in the window coordinates: dot(normal, ray), where ray is the pixel's direction with z = 1.
+struct RayFunction {
+  double at_origin = 0, by_x = 0, by_y = 0;
+  RayFunction(const View& view, const glm::dvec3& normal)
+      : at_origin(normal.z - normal.x * 0.5 * view.width / view.eta +
+                  normal.y * 0.5 * view.height / view.eta),
+        by_x(normal.x / view.eta),
+        by_y(-normal.y / view.eta) {}
+  double operator()(double x, double y) const { return at_origin + by_x * x + by_y * y; }
+};
+
+class Accumulator {
+ public:
+  Accumulator(const View& view, const ReferenceSettings& settings)
+      : view_(view), settings_(settings), radius_(std::sqrt(2.0 * settings.cutoff)) {
+    const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+    picture_.width = view.width;
+    picture_.height = view.height;
+    picture_.sums.resize(pixels);
+    certain_.resize(pixels);
+  }
+
+  void add(const Surfel& surfel) {
+    const std::optional<SurfelFilter> filter = surfel_filter(view_, surfel, settings_.prefilter);
+    if (!filter) {
+      ++picture_.skipped;
+      return;
+    }
+    const glm::dvec3 o = view_.camera_space(surfel.position);
+    const glm::dvec3 s = view_.camera_direction(surfel.tangent_s);
+    const glm::dvec3 t = view_.camera_direction(surfel.tangent_t);
+    const glm::dvec3 a = filter->axes[0][0] * s + filter->axes[0][1] * t;  // p_c = o + y0 a + y1 b
+    const glm::dvec3 b = filter->axes[1][0] * s + filter->axes[1][1] * t;
+    // The ray d z meets the plane where o + y0 a + y1 b = d z: Cramer's rule.
+    const glm::dvec3 normal = glm::cross(a, b);
+    const RayFunction denominator(view_, normal);
+    const RayFunction numerator0(view_, glm::cross(b, o));
+    const RayFunction numerator1(view_, glm::cross(o, a));
+    const double plane = glm::dot(o, normal);
+    const double reach = radius_ + settings_.cutoff_tolerance;
+    const PixelBox box = bounding_box(view_, o, reach * a, reach * b);
+    const double height = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter->determinant);
+    for (int row = box.top; row < box.bottom; ++row) {
+      for (int column = box.left; column < box.right; ++column) {
+        const double x = column + 0.5;
+        const double y = row + 0.5;
+        const double scale = 1.0 / denominator(x, y);
+        const double z = plane * scale;
+        if (!(z >= view_.near_plane && z <= view_.far_plane)) continue;
+        add_at(row, column, {numerator0(x, y) * scale, numerator1(x, y) * scale}, height, surfel.color);
+      }
+    }
+  }
+
+  ReferencePicture finish();
+
+ private:
+  void add_at(int row, int column, const glm::dvec2& y, double height, const glm::dvec3& color) {
+    const double distance = settings_.shape == CutoffShape::circle
+                                ? glm::length(y) - radius_
+                                : std::max(std::abs(y.x), std::abs(y.y)) - radius_;
+    if (distance > settings_.cutoff_tolerance) return;
+    const double weight = height * std::exp(-0.5 * glm::dot(y, y));
+    const std::size_t pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(view_.width) +
+                              static_cast<std::size_t>(column);
+    const glm::dvec4 term(weight * color, weight);
+    if (distance <= 0) picture_.sums[pixel] += term;
+    if (std::abs(distance) < settings_.cutoff_tolerance) {
+      ties_.push_back({pixel, weight, color});
+    } else if (distance <= 0) {
+      certain_[pixel] += term;
+    }
+  }
+
+  const View& view_;
+  const ReferenceSettings& settings_;
+  const double radius_;
+  ReferencePicture picture_;
+  std::vector<glm::dvec4> certain_;  // the sums without the ties
+  std::vector<Tie> ties_;
+};
+
+// The smallest (sum + sum of chosen w c)/(weight + sum of chosen w) over choices among the ties, in one
+// channel. The best choice is every tie of a value under the result, so taking them from the smallest value
+// up finds it.
+double lowest_mean(double sum, double weight, std::vector<std::pair<double, double>>& value_and_weight) {
+  std::sort(value_and_weight.begin(), value_and_weight.end());
+  for (const auto& [value, tie_weight] : value_and_weight) {
+    if (weight > 0 && value * weight >= sum) break;
+    sum += value * tie_weight;
+    weight += tie_weight;
+  }
+  return sum / weight;
+}
+
+void bound_pixel(std::span<const Tie> ties, const glm::dvec4& certain, glm::dvec3& lowest,
+                 glm::dvec3& highest) {
+  std::vector<std::pair<double, double>> value_and_weight(ties.size());
+  for (int channel = 0; channel < 3; ++channel) {
+    const auto values = [&](double sign) {
+      std::transform(ties.begin(), ties.end(), value_and_weight.begin(),
+                     [&](const Tie& tie) { return std::pair(sign * tie.color[channel], tie.weight); });
+    };
+    values(1.0);
+    lowest[channel] = lowest_mean(certain[channel], certain.w, value_and_weight);
+    values(-1.0);
+    highest[channel] = -lowest_mean(-certain[channel], certain.w, value_and_weight);
+  }
+}
+
+ReferencePicture Accumulator::finish() {
+  const std::size_t pixels = picture_.sums.size();
+  picture_.normalized.resize(pixels);
+  picture_.coverage.resize(pixels, Coverage::none);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    const glm::dvec4& sum = picture_.sums[pixel];
+    if (!(sum.w > 0)) continue;
+    picture_.normalized[pixel] = glm::dvec3(sum) / sum.w;
+    picture_.coverage[pixel] = Coverage::certain;
+  }
+  picture_.lowest = picture_.highest = picture_.normalized;
+  std::stable_sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.pixel < b.pixel; });
+  for (std::size_t first = 0, last = 0; first < ties_.size(); first = last) {
+    const std::size_t pixel = ties_[first].pixel;
+    while (last < ties_.size() && ties_[last].pixel == pixel) ++last;
+    if (!(certain_[pixel].w > 0)) picture_.coverage[pixel] = Coverage::uncertain;
+    bound_pixel(std::span(ties_).subspan(first, last - first), certain_[pixel], picture_.lowest[pixel],
+                picture_.highest[pixel]);
+  }
+  return std::move(picture_);
+}
+
+}  // namespace
+
+ReferencePicture ewa_reference(const View& view, std::span<const Surfel> surfels,
+                               const ReferenceSettings& settings) {
+  Accumulator accumulator(view, settings);
+  for (const Surfel& surfel : surfels) accumulator.add(surfel);
+  return accumulator.finish();
+}
+
+}  // namespace splatscope::kernels

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+#include "kernels/object_space_ewa/alpha_texture.h"
+#include "kernels/reference/surfel_filter.h"
+#include "kernels/view.h"
+
+// The picture of Ren 2002, Eq. 8, in double precision. A single visible surface is assumed: every surfel
+// counts, none hides another (a plane, or the surfels that passed a depth test elsewhere).
+namespace splatscope::kernels {
+
+struct ReferenceSettings {
+  bool prefilter = true;  // false: V_r alone, the plain algorithm
+  double cutoff = 1.0;    // c of Eq. 14
+  CutoffShape shape = CutoffShape::square;
+  // A splat whose cutoff passes a pixel's centre this close, in units of y, may count there or not. A texel
+  // of an alpha texture of size len is 2 sqrt(2c)/len. With the prefilter, one pixel moves y by at most 1.
+  double cutoff_tolerance = 0.0;
+};
+
+enum class Coverage : std::uint8_t {
+  none,
+  uncertain,
+  certain
+};  // uncertain: only by splats that may count or not
+
+// Of every pixel, at its centre, rows from the top.
+struct ReferencePicture {
+  int width = 0;
+  int height = 0;
+  std::vector<glm::dvec4> sums;  // sum of s_k w_k G(m^-1(x) - u_k), and in w of s_k G: no tolerance applied
+  std::vector<glm::dvec3> normalized;  // sums divided by their w; 0 where nothing counts
+  // Exact bounds, each channel by itself, of the normalised picture over every choice of the splats within
+  // the tolerance, where at least one splat counts; 0 where none can.
+  std::vector<glm::dvec3> lowest;
+  std::vector<glm::dvec3> highest;
+  std::vector<Coverage> coverage;
+  std::size_t skipped = 0;  // surfels without a filter (surfel_filter)
+};
+
+// m is the perspective map itself: the ray of a pixel's centre meets the surfel's plane at m^-1(x), and
+// counts where that lies within near and far plane. The weight is s_k/(2 pi r0 r1) exp(-y.y/2).
+ReferencePicture ewa_reference(const View& view, std::span<const Surfel> surfels,
+                               const ReferenceSettings& settings);
+
+}  // namespace splatscope::kernels

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace splatscope::kernels {
+
+// The pinhole camera of Ren 2002, section 5.2. Camera space is Direct3D's: left-handed, x right, y up, z into
+// the screen. Window coordinates are in pixels from the upper left corner; pixel (i, j) has its centre at (i
+// + 0.5, j + 0.5).
+struct View {
+  glm::dmat4 object_to_camera{1.0};  // uniform scaling, rotation and translation only (Eq. 9)
+  int width = 0;                     // pixels
+  int height = 0;
+  double eta = 0;         // Eq. 10: pixels per unit of x/z and y/z
+  double near_plane = 0;  // camera z of the clip planes, 0 < near < far
+  double far_plane = 0;
+
+  glm::dvec3 camera_space(const glm::dvec3& object_point) const {
+    return glm::dvec3(object_to_camera * glm::dvec4(object_point, 1.0));
+  }
+  glm::dvec3 camera_direction(const glm::dvec3& object_vector) const {
+    return glm::dmat3(object_to_camera) * object_vector;
+  }
+  // Eq. 10 with c0 = width/2 and c1 = height/2. `p` in camera space, p.z > 0.
+  glm::dvec2 window(const glm::dvec3& p) const {
+    return {eta * p.x / p.z + 0.5 * width, -eta * p.y / p.z + 0.5 * height};
+  }
+};
+
+// A view from `eye` to `target` with `up` upward in the picture; the field of view is that of the frame's
+// height, in degrees, in (0, 180). eye != target, and `up` not along the line of sight.
+View look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, double fov_y_degrees,
+             int width, int height, double near_plane, double far_plane);
+
+}  // namespace splatscope::kernels
