@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -64,15 +65,18 @@ struct Outcome {
 inline Outcome run_program(const std::vector<std::string>& arguments,
                            const std::filesystem::path& folder = ".") {
   const auto quoted = [](const std::string& word) {
-    std::string text = "'";
-    for (char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
+    std::ostringstream
+        text;  // for the shell: a quote within ends the word, stands escaped, and begins it again
+    text << '\'';
+    for (char c : word) c == '\'' ? text << "'\\''" : text << c;
+    text << '\'';
+    return text.str();
   };
   const ScratchFolder scratch;
   const auto out = scratch.path() / "out", error = scratch.path() / "error";
-  std::string command = "cd " + quoted(folder.string()) + " && " + quoted(SPLATSCOPE_PROGRAM);
-  for (const std::string& argument : arguments) command += " " + quoted(argument);
-  command += " >" + quoted(out.string()) + " 2>" + quoted(error.string());
+  std::string command = fmt::format("cd {} && {}", quoted(folder.string()), quoted(SPLATSCOPE_PROGRAM));
+  for (const std::string& argument : arguments) command += fmt::format(" {}", quoted(argument));
+  command += fmt::format(" >{} 2>{}", quoted(out.string()), quoted(error.string()));
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(error)};
 }

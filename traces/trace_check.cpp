@@ -4,6 +4,8 @@
 #include <cstring>
 
 #include "model/error.h"
+#include "model/isa/program.h"
+#include "model/pixel/pixel_program.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::traces {
@@ -14,6 +16,11 @@ constexpr std::uint32_t kMaxTextureEdge = 2048;  // texels: the limit of both ma
 constexpr std::uint32_t kMaxStride = 1024;       // bytes: 16 attributes of 16 bytes, and room
 constexpr std::size_t kMaxConstants = 96;        // vs_1_1
 constexpr std::uint8_t kInputs = 16;             // vs_1_1
+
+struct Loaded {
+  isa::ShaderKind kind;
+  unsigned texture_stages;  // bit n: stage n is sampled
+};
 
 // Checks the commands of one trace. `where` names the part that a message is about.
 class Checker {
@@ -31,6 +38,10 @@ class Checker {
     for (std::size_t i = 0; i < trace_.textures.size(); ++i) {
       where_ = fmt::format("texture {}", i);
       check_texture(trace_.textures[i]);
+    }
+    for (std::size_t i = 0; i < trace_.programs.size(); ++i) {
+      where_ = fmt::format("program {}", i);
+      programs_.push_back(check_program(trace_.programs[i]));
     }
     for (std::size_t i = 0; i < trace_.commands.size(); ++i) {
       where_ = fmt::format("command {}", i);
@@ -69,6 +80,33 @@ class Checker {
            fmt::format("{} for {} x {}", texels, texture.width, texture.height));
   }
 
+  Loaded check_program(const ShaderText& text) const {
+    try {
+      const isa::Program program = isa::load(text.text, text.name);
+      const bool is_pixel = program.version.kind == isa::ShaderKind::pixel;
+      return {program.version.kind, is_pixel ? pixel::PixelProgram(program).texture_stages() : 0};
+    } catch (const UserError& error) {
+      fail(error.what(), "a program that loads");
+    }
+  }
+
+  const Loaded& program(std::string_view what, std::uint32_t index, isa::ShaderKind kind) const {
+    const Loaded& found = item(what, programs_, index);
+    if (found.kind != kind)
+      fail(fmt::format("program {} is of the other kind", index), fmt::format("a {}", what));
+    return found;
+  }
+
+  void check_programs(const Draw& draw) const {
+    program("vertex program", draw.vertex_program, isa::ShaderKind::vertex);
+    if (!draw.pixel_program) return;
+    const unsigned stages =
+        program("pixel program", *draw.pixel_program, isa::ShaderKind::pixel).texture_stages;
+    if (stages & ~1u)
+      fail("the pixel program samples a texture stage above 0", "stage 0, the only one of a draw");
+    if (stages && !draw.texture) fail("the pixel program samples a texture and the draw has none", "one");
+  }
+
   void check_command(const NormalizeOnHost&) const {}
 
   void check_command(const Clear& clear) const {
@@ -77,8 +115,7 @@ class Checker {
   }
 
   void check_command(const Draw& draw) const {
-    item("vertex program", trace_.programs, draw.vertex_program);
-    if (draw.pixel_program) item("pixel program", trace_.programs, *draw.pixel_program);
+    check_programs(draw);
     if (draw.texture) item("texture", trace_.textures, *draw.texture);
     in_range("number of constants", draw.constants.size(), 0, kMaxConstants);
     const auto last = static_cast<unsigned>(BlendFactor::src_alpha_saturate);
@@ -129,6 +166,7 @@ class Checker {
   const Trace& trace_;
   std::string_view file_;
   std::string where_;
+  std::vector<Loaded> programs_;  // of the trace
 };
 
 }  // namespace
