@@ -1,0 +1,129 @@
+#include "kernels/object_space_ewa/programs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "kernels/object_space_ewa/quad_runner.h"
+#include "model/error.h"
+
+namespace splatscope::kernels {
+namespace {
+
+constexpr double kDepthOffset = 0.05;
+
+// Surfels of every kind that some instruction is there for.
+std::vector<Surfel> mixed_surfels(const View& view, std::uint32_t seed) {
+  std::printf("seed %u\n", seed);
+  std::mt19937 generator(seed);
+  std::vector<Surfel> surfels;
+  for (int i = 0; i < 500; ++i) surfels.push_back(random_surfel(view, SurfelRanges{}, generator));
+  const glm::dmat4 to_object = glm::inverse(view.object_to_camera);
+  const auto add = [&](const glm::dvec3& o, const glm::dvec3& s, const glm::dvec3& t) {  // camera space
+    Surfel surfel;
+    surfel.position = glm::dvec3(to_object * glm::dvec4(o, 1.0));
+    surfel.tangent_s = glm::dmat3(to_object) * s;
+    surfel.tangent_t = glm::dmat3(to_object) * t;
+    surfel.sigma = 0.8;
+    surfels.push_back(surfel);
+  };
+  add({0, 0, 2}, {0.01, 0, 0}, {0, 0.01, 0});                         // faces the camera: t = 0
+  add({0, 0, 2}, {0.0075, 0.0025, -0.006}, {0.0025, 0.0075, 0.006});  // p = 0
+  add({0, 0, 2}, {0.01, 0, 0}, {0, 0, 0.01});                         // edge-on: D = 0
+  add({0.3, 0.1, -2}, {0.01, 0, 0}, {0, 0.01, 0});                    // behind the eye
+  return surfels;
+}
+
+TEST(Programs, slots_of_the_paper) {
+  EXPECT_EQ(isa::slot_count(load_program(kVisibilityProgram)), 13);
+  EXPECT_EQ(isa::slot_count(load_program(kPlainProgram)), 21);
+  EXPECT_EQ(isa::slot_count(load_program(kEwaProgram)), 78);
+}
+
+TEST(Programs, an_unknown_name_is_an_error) {
+  EXPECT_THROW(object_space_ewa_program("splat.vs"), ModelError);
+}
+
+class Liveness : public testing::TestWithParam<std::string_view> {};
+
+// Without any one instruction some surfel comes out otherwise: nothing is padding.
+TEST_P(Liveness, every_instruction_changes_an_output) {
+  const View view = rounded(look_at({0, 0, -4}, {0, 0, 0}, {0, 1, 0}, 60.0, 512, 400, 0.1, 1000.0));
+  const std::vector<Surfel> surfels = mixed_surfels(view, 78);
+  const std::vector<Vec4> constants = splat_constants(view, 1.0, kDepthOffset);
+  const isa::Program program = load_program(GetParam());
+  const auto whole = run_quads(program, Arithmetic::ieee, constants, surfels);
+  for (std::size_t i = 0; i < program.instructions.size(); ++i) {
+    isa::Program without = program;
+    without.instructions.erase(without.instructions.begin() + static_cast<std::ptrdiff_t>(i));
+    EXPECT_NE(run_quads(without, Arithmetic::ieee, constants, surfels), whole)
+        << program.name << ":" << program.instructions[i].line << " is dead";
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Programs, Liveness, testing::Values(kVisibilityProgram, kPlainProgram, kEwaProgram),
+                         [](const auto& info) {
+                           return std::string(info.param.substr(0, info.param.find('.')));
+                         });
+
+// The frustum of splat_constants: clip coordinates over w are window coordinates and depth.
+TEST(Programs, projection_is_that_of_the_view) {
+  const View view = rounded(look_at({1, 2, -4}, {0, 0, 0}, {0, 1, 0}, 50.0, 640, 480, 0.5, 20.0));
+  std::vector<Surfel> surfels(1);
+  surfels[0].position = glm::vec3(0.5, 0.25, 0.125);
+  for (const double depth : {0.5, 3.0, 20.0}) {
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.2, 0.3, 1.0));
+    const glm::dvec3 o = direction * (depth / direction.z);
+    surfels[0].position = glm::dvec3(glm::inverse(view.object_to_camera) * glm::dvec4(o, 1.0));
+    const auto quads =
+        run_quads(load_program(kPlainProgram), Arithmetic::ieee, splat_constants(view, 1.0, 0.0), surfels);
+    const glm::dvec4 clip(quads[0][0].position);  // no tangents: every corner is o
+    const glm::dvec2 window = view.window(o);
+    EXPECT_NEAR((clip.x / clip.w + 1) * 0.5 * view.width, window.x, 1e-3);
+    EXPECT_NEAR((1 - clip.y / clip.w) * 0.5 * view.height, window.y, 1e-3);
+    EXPECT_NEAR(clip.w, depth, 1e-5);
+    EXPECT_NEAR(clip.z / clip.w, (depth - 0.5) / (20.0 - 0.5) * 20.0 / depth, 1e-5);
+  }
+}
+
+// Section 5.1: o +- s +- t, each moved by z_t along its own viewing ray.
+TEST(Programs, visibility_moves_corners_along_their_viewing_rays) {
+  const View view = test_view();
+  std::mt19937 generator(13);
+  SurfelRanges ranges;
+  ranges.depth[1] = 10.0;
+  std::vector<Surfel> surfels;
+  for (int i = 0; i < 1000; ++i) surfels.push_back(random_surfel(view, ranges, generator));
+  const auto quads = run_quads(load_program(kVisibilityProgram), Arithmetic::ieee,
+                               splat_constants(view, 1.0, kDepthOffset), surfels);
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const glm::dvec2 y = 2.0 * glm::dvec2(kCorners[corner]) - 1.0;
+      const glm::dvec3 p =
+          view.camera_space(surfels[i].position + y.x * surfels[i].tangent_s + y.y * surfels[i].tangent_t);
+      const glm::dvec3 moved = p + kDepthOffset * glm::normalize(p);
+      const glm::dvec4 clip(quads[i][corner].position);
+      const double tolerance = 1e-6 * (glm::length(p) + 5.0);  // 5: the eye's distance from the origin
+      EXPECT_NEAR(clip.w, moved.z, tolerance);
+      EXPECT_NEAR(clip.x * 0.5 * view.width / view.eta, moved.x, tolerance);
+      EXPECT_NEAR(clip.y * 0.5 * view.height / view.eta, moved.y, tolerance);
+    }
+  }
+}
+
+TEST(Programs, colour_and_texture_coordinates_pass) {
+  const View view = test_view();
+  std::mt19937 generator(5);
+  const std::vector<Surfel> surfels{random_surfel(view, SurfelRanges{}, generator)};
+  for (const std::string_view name : {kPlainProgram, kEwaProgram}) {
+    const auto quads =
+        run_quads(load_program(name), Arithmetic::ieee, splat_constants(view, 1.0, 0.0), surfels);
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      EXPECT_EQ(quads[0][corner].texture, kCorners[corner]);
+      EXPECT_EQ(glm::vec3(quads[0][corner].diffuse), glm::vec3(surfels[0].color));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::kernels
