@@ -23,9 +23,12 @@ struct View {
   glm::dvec3 camera_direction(const glm::dvec3& object_vector) const {
     return glm::dmat3(object_to_camera) * object_vector;
   }
-  // Eq. 10 with c0 = width/2 and c1 = height/2. `p` in camera space, p.z > 0.
+  // c0 and c1 of Eq. 10. Direct3D 8 has pixel centres at integers, the rasteriser at halves: half a pixel
+  // more than the middle of the frame.
+  glm::dvec2 center() const { return {0.5 * width + 0.5, 0.5 * height + 0.5}; }
+  // Eq. 10. `p` in camera space, p.z > 0.
   glm::dvec2 window(const glm::dvec3& p) const {
-    return {eta * p.x / p.z + 0.5 * width, -eta * p.y / p.z + 0.5 * height};
+    return center() + glm::dvec2(eta * p.x / p.z, -eta * p.y / p.z);
   }
 };
 

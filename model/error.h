@@ -1,15 +1,16 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-#include <fmt/format.h>
-
 namespace splatscope {
 
-// What a user gave is wrong: a program, a scene, a machine, a trace, an output folder. `app` prints what() and
-// exits with 2. The text is one line: "file:line: what is wrong, what was expected" (line 0: no line, "file: ...").
+// What a user gave is wrong: a program, a scene, a machine, a trace, an output folder. `app` prints what()
+// and exits with 2. The text is one line: "file:line: what is wrong, what was expected" (line 0: no line,
+// "file: ...").
 class UserError : public std::runtime_error {
  public:
   UserError(std::string_view file, int line, std::string_view message)

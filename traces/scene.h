@@ -41,11 +41,11 @@ enum class VertexMemory { video, agp };
 
 struct Splatting {
   Algorithm algorithm = Algorithm::ewa_per_surfel;
-  double cutoff = 0;        // c: the splat ends at c standard deviations (5.2)
+  double cutoff = 0;        // c: the splat ends at sqrt(2c) standard deviations (Eq. 14)
   double depth_offset = 0;  // z_t of the visibility pass, object units (5.1)
   double gamma = 0;         // scale of the weights, below 1 so that their sums do not saturate (7.2)
   double sigma = 0;         // standard deviation of the reconstruction filter, in units of a surfel's radius
-  bool circular_cutoff = false;  // texels further than c from the centre are 0; else the whole square is used
+  bool circular_cutoff = false;  // texels beyond the cutoff are 0; else the whole square is used
   VertexMemory vertex_memory = VertexMemory::video;
 };
 

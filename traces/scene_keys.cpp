@@ -18,7 +18,8 @@ Overloaded(Parts...) -> Overloaded<Parts...>;
 
 using S = SceneSettings;
 
-// The default picture is Fig. 11 of Ren 2002: a plane of 64k surfels that recedes toward the horizon.
+// The default picture is Fig. 11 of Ren 2002: a plane of 64k surfels that recedes toward the horizon. The
+// paper gives neither its camera nor the size of its squares: these are a reconstruction.
 const std::array kKeys = {
     SceneKey{"surfels", "file", "",
              "surfel file (PLY), relative to the scene file; empty: `generator` makes them",
@@ -40,13 +41,13 @@ const std::array kKeys = {
              IntegerValue{[](S& s) -> int& { return s.surfels.neighbours; }, 8, 3, 64}},
 
     SceneKey{"camera", "eye", "object units", "where the camera is",
-             VectorValue{[](S& s) -> glm::dvec3& { return s.camera.eye; }, {0, 30, 166}, -kFar, kFar}},
+             VectorValue{[](S& s) -> glm::dvec3& { return s.camera.eye; }, {0, 45, 180}, -kFar, kFar}},
     SceneKey{"camera", "target", "object units", "what it looks at",
-             VectorValue{[](S& s) -> glm::dvec3& { return s.camera.target; }, {0, 3, 66}, -kFar, kFar}},
+             VectorValue{[](S& s) -> glm::dvec3& { return s.camera.target; }, {0, 0, 40}, -kFar, kFar}},
     SceneKey{"camera", "up", "", "direction that is up in the picture",
              VectorValue{[](S& s) -> glm::dvec3& { return s.camera.up; }, {0, 1, 0}, -kFar, kFar}},
     SceneKey{"camera", "fov_y_degrees", "degrees", "angle of view over the frame's height",
-             RealValue{[](S& s) -> double& { return s.camera.fov_y_degrees; }, 45, 0.01, 179}},
+             RealValue{[](S& s) -> double& { return s.camera.fov_y_degrees; }, 60, 0.01, 179}},
     SceneKey{"camera", "near", "object units", "distance of the near clip plane",
              RealValue{[](S& s) -> double& { return s.camera.near; }, 1, 1e-6, kFar}},
     SceneKey{"camera", "far", "object units", "distance of the far clip plane, beyond `near`",
@@ -63,18 +64,17 @@ const std::array kKeys = {
              ChoiceValue{[](S& s, int i) { s.splatting.algorithm = Algorithm(i); },
                          {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"},
                          2}},
-    SceneKey{"splatting", "cutoff", "standard deviations", "c: where a splat ends (Ren 2002, 5.2)",
+    SceneKey{"splatting", "cutoff", "", "c: a splat ends at sqrt(2c) standard deviations (Ren 2002, Eq. 14)",
              RealValue{[](S& s) -> double& { return s.splatting.cutoff; }, 1, 0.25, 8}},
     SceneKey{"splatting", "depth_offset", "object units",
              "z_t of the visibility pass (Ren 2002, 5.1); 0: the average spacing of the surfels",
              RealValue{[](S& s) -> double& { return s.depth_offset; }, 0, 0, kFar}},
     SceneKey{"splatting", "gamma", "", "scale of the weights against saturation (Ren 2002, 7.2)",
              RealValue{[](S& s) -> double& { return s.splatting.gamma; }, 0.73, 0.01, 1}},
-    // 1/sqrt 2: on a square grid, whose radius is the diagonal, the deviation is then the spacing (Ren 2002,
-    // 6: "for points with approximately unit spacing, the reconstruction kernel is chosen as a unit
-    // Gaussian").
+    // 1: V_r = I where the radius h is the unit. On a square grid h is sqrt 2 spacings; the truncated splats
+    // then sum to at most 1.37, whose inverse is the paper's gamma = 0.73.
     SceneKey{"splatting", "sigma", "radii", "standard deviation of the reconstruction filter",
-             RealValue{[](S& s) -> double& { return s.splatting.sigma; }, 0.70710678118654752, 0.01, 10}},
+             RealValue{[](S& s) -> double& { return s.splatting.sigma; }, 1, 0.01, 10}},
     SceneKey{"splatting", "circular_cutoff", "", "texels further than `cutoff` from the centre are 0",
              BooleanValue{[](S& s) -> bool& { return s.splatting.circular_cutoff; }, true}},
     SceneKey{

@@ -53,8 +53,7 @@ PixelBox bounding_box(const View& view, const glm::dvec3& o, const glm::dvec3& a
 struct RayFunction {
   double at_origin = 0, by_x = 0, by_y = 0;
   RayFunction(const View& view, const glm::dvec3& normal)
-      : at_origin(normal.z - normal.x * 0.5 * view.width / view.eta +
-                  normal.y * 0.5 * view.height / view.eta),
+      : at_origin(normal.z - normal.x * view.center().x / view.eta + normal.y * view.center().y / view.eta),
         by_x(normal.x / view.eta),
         by_y(-normal.y / view.eta) {}
   double operator()(double x, double y) const { return at_origin + by_x * x + by_y * y; }

@@ -55,8 +55,8 @@ std::optional<Contribution> contribution(const View& view, const Surfel& surfel,
                                          const ReferenceSettings& settings, int column, int row) {
   const auto filter = surfel_filter(view, surfel, settings.prefilter);
   if (!filter) return std::nullopt;
-  const glm::dvec3 d{(column + 0.5 - 0.5 * view.width) / view.eta,
-                     -(row + 0.5 - 0.5 * view.height) / view.eta, 1.0};
+  const glm::dvec3 d{(column + 0.5 - view.center().x) / view.eta, -(row + 0.5 - view.center().y) / view.eta,
+                     1.0};
   const glm::dmat3 system{view.camera_direction(surfel.tangent_s), view.camera_direction(surfel.tangent_t),
                           -d};
   const glm::dvec3 solution = glm::inverse(system) * -view.camera_space(surfel.position);
@@ -111,17 +111,16 @@ TEST(EwaReference, brute_force_plain) {
   compare_with_brute_force({false, 2.0, CutoffShape::square, 0.0}, 13);
 }
 
-// At z = 2 h is 2.5 pixels: r^2 = 1 + 1/6.25, and pixel (50, 50) is half a pixel, 0.2 h, from the centre each
-// way.
+// At z = 2 h is 2.5 pixels: r^2 = 1 + 1/6.25, and pixel (51, 50) is a pixel, 0.4 h, from the surfel's.
 TEST(EwaReference, one_facing_surfel) {
   const View view = facing_view(100);
   const std::vector<Surfel> surfels{facing_surfel()};
   const ReferencePicture picture = ewa_reference(view, surfels, {});
-  const double expected = std::exp(-0.5 * 0.08 / 1.16) / (2.0 * std::numbers::pi * 1.16);
-  const glm::dvec4& sum = picture.sums[50 * 100 + 50];
+  const double expected = std::exp(-0.5 * 0.16 / 1.16) / (2.0 * std::numbers::pi * 1.16);
+  const glm::dvec4& sum = picture.sums[50 * 100 + 51];
   EXPECT_NEAR(sum.w, expected, 1e-12);
   EXPECT_NEAR(sum.g, 0.5 * expected, 1e-12);
-  EXPECT_NEAR(picture.normalized[50 * 100 + 50].b, 1.0, 1e-12);
+  EXPECT_NEAR(picture.normalized[50 * 100 + 51].b, 1.0, 1e-12);
   EXPECT_EQ(picture.coverage[0], Coverage::none);
 }
 

@@ -32,8 +32,8 @@ void expect_near(const glm::dmat2& a, const glm::dmat2& b, double tolerance) {
 TEST(View, target_is_in_the_middle_and_up_is_up) {
   const View view = test_view();
   const glm::dvec2 middle = view.window(view.camera_space({0.1, 0.4, 1.0}));
-  EXPECT_NEAR(middle.x, 320.0, 1e-9);
-  EXPECT_NEAR(middle.y, 256.0, 1e-9);
+  EXPECT_NEAR(middle.x, 320.5, 1e-9);
+  EXPECT_NEAR(middle.y, 256.5, 1e-9);
   EXPECT_LT(view.window(view.camera_space({0.1, 0.5, 1.0})).y, 256.0);
   EXPECT_GT(view.window(view.camera_space({0.2, 0.4, 1.0})).x, 320.0);
   EXPECT_NEAR(view.eta, 256.0 / std::tan(std::acos(-1.0) / 6.0), 1e-9);

@@ -47,10 +47,10 @@ struct ShaderText {
 
 // Fixed-function state of a draw.
 struct DrawState {
-  bool depth_test = true;   // passes where depth <= stored depth
+  bool depth_test = true;  // passes where depth <= stored depth
   bool depth_write = true;
   bool color_write = true;
-  bool blend = false;       // out = src*source_factor + dst*destination_factor
+  bool blend = false;  // out = src*source_factor + dst*destination_factor
   BlendFactor source_factor = BlendFactor::one;
   BlendFactor destination_factor = BlendFactor::zero;
 };
@@ -61,13 +61,13 @@ struct Draw {
   std::optional<std::uint32_t> pixel_program;  // absent: the interpolated diffuse colour
   std::optional<std::uint32_t> texture;        // of stage 0
   std::uint32_t vertex_buffer = 0;
-  std::uint32_t vertex_stride = 0;             // bytes
+  std::uint32_t vertex_stride = 0;  // bytes
   std::vector<VertexAttribute> attributes;
-  std::uint32_t base_vertex = 0;               // added to each index (D3D8 SetIndices)
+  std::uint32_t base_vertex = 0;  // added to each index (D3D8 SetIndices)
   std::uint32_t index_buffer = 0;
   std::uint32_t first_index = 0;
-  std::uint32_t index_count = 0;               // a multiple of 3
-  std::vector<Vec4> constants;                 // c0, c1, ...: at most 96, the rest are 0
+  std::uint32_t index_count = 0;  // a multiple of 3
+  std::vector<Vec4> constants;    // c0, c1, ...: at most 96, the rest are 0
   DrawState state;
 };
 
@@ -76,8 +76,8 @@ struct Clear {
   float depth = 1.0f;  // 0..1
 };
 
-// The host reads the frame buffer over the bus, divides r, g and b by alpha (the summed weights; 0 stays 0), and
-// writes it back: per-pixel normalisation, Ren 2002, section 7.
+// The host reads the frame buffer over the bus, divides r, g and b by alpha (the summed weights; 0 stays 0),
+// and writes it back: per-pixel normalisation, Ren 2002, section 7.
 struct NormalizeOnHost {};
 
 using Command = std::variant<Clear, Draw, NormalizeOnHost>;

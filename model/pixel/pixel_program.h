@@ -13,14 +13,14 @@ inline constexpr int kBatch = 64;  // fragments executed together
 
 // Registers of a batch of fragments, structure of arrays: [component r g b a][fragment].
 struct FragmentBatch {
-  alignas(64) float v0[4][kBatch];       // interpolated diffuse, in [0, 1]
-  alignas(64) float v1[4][kBatch];       // interpolated specular
-  alignas(64) float t[4][4][kBatch];     // texture coordinates in; where `sampled`, the texel of that stage
-  alignas(64) float r0[4][kBatch];       // result
+  alignas(64) float v0[4][kBatch];    // interpolated diffuse, in [0, 1]
+  alignas(64) float v1[4][kBatch];    // interpolated specular
+  alignas(64) float t[4][4][kBatch];  // texture coordinates in; where `sampled`, the texel of that stage
+  alignas(64) float r0[4][kBatch];    // result
 };
 
-// A ps_1_x program made ready to run. Without `tex` instructions' own sampling: the caller samples stage n at the
-// coordinates t[n] for every stage in texture_stages() before run() and stores the texel in t[n].
+// A ps_1_x program made ready to run. Without `tex` instructions' own sampling: the caller samples stage n at
+// the coordinates t[n] for every stage in texture_stages() before run() and stores the texel in t[n].
 class PixelProgram {
  public:
   explicit PixelProgram(const isa::Program& program);

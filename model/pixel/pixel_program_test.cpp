@@ -1,9 +1,9 @@
 #include "model/pixel/pixel_program.h"
 
+#include <gtest/gtest.h>
+
 #include <memory>
 #include <string>
-
-#include <gtest/gtest.h>
 
 namespace splatscope::pixel {
 namespace {
@@ -38,7 +38,8 @@ TEST(PixelProgram, SourceAndDestinationModifiers) {
 }
 
 TEST(PixelProgram, APairReadsBeforeEitherHalfWrites) {
-  EXPECT_EQ(run("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, r0.b\n"), (Vec4{0.75f, 0.75f, 0.75f, 1.0f}));
+  EXPECT_EQ(run("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, r0.b\n"),
+            (Vec4{0.75f, 0.75f, 0.75f, 1.0f}));
 }
 
 }  // namespace

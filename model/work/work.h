@@ -9,37 +9,37 @@ namespace splatscope {
 
 enum class TriangleOutcome : std::uint8_t {
   drawn,
-  no_coverage,       // no pixel centre inside (degenerate ones too)
-  outside_frustum,   // wholly outside one clip plane
-  behind_near,       // wholly before the near plane or behind the eye
-  not_finite         // a NaN or INF position: dropped, and counted
+  no_coverage,      // no pixel centre inside (degenerate ones too)
+  outside_frustum,  // wholly outside one clip plane
+  behind_near,      // wholly before the near plane or behind the eye
+  not_finite        // a NaN or INF position: dropped, and counted
 };
 
 struct TriangleWork {
-  std::uint32_t quad_count = 0;        // 2x2 quads with coverage, in raster order
-  std::uint32_t tile_count = 0;        // 8x8-pixel tiles the rasteriser visited
-  std::uint8_t new_vertices = 0;       // 0..3 not found in the post-transform FIFO: they are shaded first
-  std::uint8_t pieces = 1;             // triangles after clipping; 0 when rejected
+  std::uint32_t quad_count = 0;   // 2x2 quads with coverage, in raster order
+  std::uint32_t tile_count = 0;   // 8x8-pixel tiles the rasteriser visited
+  std::uint8_t new_vertices = 0;  // 0..3 not found in the post-transform FIFO: they are shaded first
+  std::uint8_t pieces = 1;        // triangles after clipping; 0 when rejected
   TriangleOutcome outcome = TriangleOutcome::drawn;
 };
 
 // Pixels of a quad, bit = (y&1)*2 + (x&1).
 struct QuadWork {
-  std::uint16_t x = 0, y = 0;           // pixel / 2
-  std::uint8_t covered = 0;             // 4-bit mask
-  std::uint8_t passed = 0;              // subset of `covered` that passed the depth test (all where it is off)
-  std::uint8_t texel_block_count = 0;   // distinct texel blocks of the passed pixels: 0..4
+  std::uint16_t x = 0, y = 0;          // pixel / 2
+  std::uint8_t covered = 0;            // 4-bit mask
+  std::uint8_t passed = 0;             // subset of `covered` that passed the depth test (all where it is off)
+  std::uint8_t texel_block_count = 0;  // distinct texel blocks of the passed pixels: 0..4
 };
 
 // 4x4 texels (16 bytes of an A8 texture), numbered by rows of blocks.
 inline constexpr std::uint32_t kTexelBlockEdge = 4;
 
 struct DrawWork {
-  std::uint32_t command = 0;                     // its place in Trace::commands
-  std::vector<std::uint32_t> shaded_vertices;    // vertex numbers (base_vertex added) in the order of shading
-  std::vector<TriangleWork> triangles;           // as indexed
-  std::vector<QuadWork> quads;                   // of all triangles in order
-  std::vector<std::uint32_t> texel_blocks;       // of all quads in order
+  std::uint32_t command = 0;                   // its place in Trace::commands
+  std::vector<std::uint32_t> shaded_vertices;  // vertex numbers (base_vertex added) in the order of shading
+  std::vector<TriangleWork> triangles;         // as indexed
+  std::vector<QuadWork> quads;                 // of all triangles in order
+  std::vector<std::uint32_t> texel_blocks;     // of all quads in order
 };
 
 }  // namespace splatscope

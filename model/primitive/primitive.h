@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "model/command/commands.h"
+#include "model/work/work.h"
+
+// Primitive assembly: from shaded vertices in clip space to triangles in window coordinates.
+namespace splatscope::primitive {
+
+// What the pixel unit reads of a vertex, in this order; only those that a draw uses are interpolated.
+enum Attribute : int { kDiffuse = 0, kSpecular = 1, kTexcoord0 = 2, kAttributes = 6 };
+
+struct ClipVertex {
+  Vec4 position{};  // x y z w of oPos; the clip volume is -w <= x, y <= w, 0 <= z <= w (Direct3D)
+  std::array<Vec4, kAttributes> attributes{};
+};
+
+struct WindowVertex {
+  double x = 0, y = 0;  // pixels from the left and top edge; the centre of pixel i is at i + 0.5
+  double z = 0;         // 0 (near) to 1 (far)
+  double inverse_w = 0;
+  std::array<Vec4, kAttributes> attributes{};
+};
+
+using ClipTriangle = std::array<ClipVertex, 3>;
+using WindowTriangle = std::array<WindowVertex, 3>;
+
+struct Viewport {
+  std::uint32_t width = 0, height = 0;
+};
+
+// A triangle clipped by seven planes has at most this many corners.
+inline constexpr int kMaxCorners = 10;
+inline constexpr int kMaxPieces = kMaxCorners - 2;
+
+// Window coordinates stay within +-kGuardBand pixels; beyond it a triangle is clipped, inside it the scissor
+// of the rasteriser is enough, as on the hardware of 2002 (the width of its guard band is not published: this
+// one is ours).
+inline constexpr double kGuardBand = 32768.0;
+
+struct Assembled {
+  TriangleOutcome outcome = TriangleOutcome::drawn;  // `drawn` where pieces are left to rasterise
+  int pieces = 0;
+};
+
+// Rejects, clips and projects one triangle; writes its pieces (a fan) to `out`. Only the attributes in `used`
+// (indices into Attribute) are carried along.
+Assembled assemble(const ClipTriangle& triangle, const Viewport& viewport, std::span<const int> used,
+                   std::array<WindowTriangle, kMaxPieces>& out);
+
+}  // namespace splatscope::primitive

@@ -1,0 +1,122 @@
+#include "model/primitive/primitive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace splatscope::primitive {
+namespace {
+
+constexpr Viewport kViewport{512, 512};
+constexpr int kUsed[] = {kDiffuse};
+
+ClipVertex at(float x, float y, float z, float w, float red = 0) {
+  ClipVertex vertex;
+  vertex.position = {x, y, z, w};
+  vertex.attributes[kDiffuse] = {red, 0, 0, 0};
+  return vertex;
+}
+
+struct Outcome {
+  Assembled assembled;
+  std::array<WindowTriangle, kMaxPieces> pieces;
+};
+
+Outcome run(const ClipTriangle& triangle) {
+  Outcome out;
+  out.assembled = assemble(triangle, kViewport, kUsed, out.pieces);
+  return out;
+}
+
+double area(const WindowTriangle& t) {
+  return 0.5 * std::abs((t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x));
+}
+
+TEST(Primitive, ProjectsToTheViewport) {
+  const Outcome out = run({at(-2, 2, 1, 2), at(2, 2, 1, 2), at(0, 0, 1, 2)});
+  ASSERT_EQ(1, out.assembled.pieces);
+  const auto& [a, b, c] = out.pieces[0];
+  // Direct3D's pixel centres at integers are the rasteriser's at halves.
+  EXPECT_DOUBLE_EQ(0.5, a.x);
+  EXPECT_DOUBLE_EQ(0.5, a.y);
+  EXPECT_DOUBLE_EQ(512.5, b.x);
+  EXPECT_DOUBLE_EQ(256.5, c.x);
+  EXPECT_DOUBLE_EQ(256.5, c.y);
+  EXPECT_DOUBLE_EQ(0.5, c.z);
+  EXPECT_DOUBLE_EQ(0.5, c.inverse_w);
+}
+
+TEST(Primitive, RejectsWhatLiesOutside) {
+  EXPECT_EQ(TriangleOutcome::outside_frustum,
+            run({at(3, 0, 1, 2), at(4, 0, 1, 2), at(3, 1, 1, 2)}).assembled.outcome);
+  EXPECT_EQ(TriangleOutcome::outside_frustum,
+            run({at(0, 0, 3, 2), at(1, 0, 3, 2), at(0, 1, 3, 2)}).assembled.outcome);
+  EXPECT_EQ(TriangleOutcome::behind_near,
+            run({at(0, 0, -1, 1), at(1, 0, -1, 1), at(0, 1, -1, 1)}).assembled.outcome);
+  EXPECT_EQ(TriangleOutcome::behind_near,
+            run({at(0, 0, 1, -1), at(1, 0, 1, -1), at(0, 1, 1, -1)}).assembled.outcome);
+}
+
+TEST(Primitive, DropsWhatIsNotFinite) {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (int component = 0; component < 4; ++component) {
+      ClipTriangle triangle{at(0, 0, 1, 2), at(1, 0, 1, 2), at(0, 1, 1, 2)};
+      triangle[1].position[static_cast<std::size_t>(component)] = bad;
+      EXPECT_EQ(TriangleOutcome::not_finite, run(triangle).assembled.outcome);
+    }
+  }
+}
+
+TEST(Primitive, ClipsAtTheNearPlane) {
+  // Half of it before the near plane: a quadrilateral is left, whose cut corners carry interpolated
+  // attributes.
+  const Outcome out = run({at(-1, 0, -1, 1, 0), at(0, 1, 1, 2, 1), at(1, 0, 1, 2, 1)});
+  ASSERT_EQ(TriangleOutcome::drawn, out.assembled.outcome);
+  ASSERT_EQ(2, out.assembled.pieces);
+  int cut = 0;
+  for (int piece = 0; piece < 2; ++piece) {
+    for (const WindowVertex& vertex : out.pieces[static_cast<std::size_t>(piece)]) {
+      EXPECT_GE(vertex.z, 0);
+      if (vertex.z == 0) {
+        ++cut;
+        EXPECT_FLOAT_EQ(0.5f, vertex.attributes[kDiffuse][0]);
+      }
+    }
+  }
+  EXPECT_EQ(3, cut);  // two cut corners, one of them in both pieces
+}
+
+TEST(Primitive, KeepsAreaWhenClippedByTheGuardBand) {
+  // 10^6 pixels wide: cut to the guard band, which is left of it in full height.
+  const Outcome out = run({at(-4000, -1, 1, 2), at(-4000, 1, 1, 2), at(4000, 1, 1, 2)});
+  ASSERT_EQ(TriangleOutcome::drawn, out.assembled.outcome);
+  double sum = 0;
+  for (int piece = 0; piece < out.assembled.pieces; ++piece) {
+    const WindowTriangle& t = out.pieces[static_cast<std::size_t>(piece)];
+    for (const WindowVertex& vertex : t) EXPECT_LE(std::abs(vertex.x), kGuardBand + 1);
+    sum += area(t);
+  }
+  // Its height is 256 pixels at the left and 0 at the right, over 1024000 pixels; the band is 65536 of them,
+  // centred.
+  EXPECT_NEAR(128.0 * 65536, sum, 1e-4 * sum + 128.0 * 512);
+}
+
+TEST(Primitive, SurvivesExtremeCoordinates) {
+  const float huge = 1e30f, tiny = 1e-38f;
+  for (const float x : {huge, -huge, tiny, 0.0f}) {
+    for (const float w : {huge, tiny, 1.0f}) {
+      const Outcome out = run({at(x, 1, tiny, w), at(1, x, 0, w), at(-x, -1, w, w)});
+      for (int piece = 0; piece < out.assembled.pieces; ++piece) {
+        for (const WindowVertex& vertex : out.pieces[static_cast<std::size_t>(piece)]) {
+          EXPECT_LE(std::abs(vertex.x), 2 * kGuardBand);
+          EXPECT_LE(std::abs(vertex.y), 2 * kGuardBand);
+          EXPECT_GE(vertex.inverse_w, 0);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::primitive

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+
+#include "model/command/commands.h"
+#include "model/number/formats.h"
+#include "traces/scene.h"
+
+// What the application and the driver did in 2002: a scene becomes buffers, programs, state and draws.
+namespace splatscope::traces {
+
+// Host-side facts of a recording that a run reports beside its counters.
+struct RecordCounts {
+  std::size_t surfels = 0;             // drawn
+  std::size_t weights_captured = 0;    // surfels seen from at least one view of the capture
+  std::size_t weights_by_default = 0;  // surfels seen from none: they get the median of the others
+};
+
+struct Recording {
+  Trace trace;
+  RecordCounts counts;
+};
+
+// Records one frame of `scene`: clear, visibility splatting, EWA or plain splatting, and for ewa-per-pixel
+// the normalisation on the host. The other algorithms need per-surfel weights, captured first by rendering on
+// the machine
+// (`formats`), as section 7.2 describes. `progress` is told the fraction done.
+Recording record(const Scene& scene, const NumberFormats& formats,
+                 const std::function<void(double)>& progress = {});
+
+}  // namespace splatscope::traces

@@ -1,0 +1,112 @@
+#include "traces/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+
+#include "model/render.h"
+#include "traces/splat_trace.h"
+#include "traces/trace_file.h"
+#include "traces/weight_capture.h"
+
+namespace splatscope::traces {
+namespace {
+
+Scene small_plane(Algorithm algorithm) {
+  Scene scene = parse_scene(
+      "[surfels]\ncolumns = 24\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
+      "[camera]\neye = [0, 14, -20]\ntarget = [0, 0, 0]\n",
+      "plane.toml");
+  scene.splatting.algorithm = algorithm;
+  return scene;
+}
+
+TEST(Recorder, TangentsSpanTheSurfel) {
+  std::mt19937 random(1);
+  std::normal_distribution<float> any;
+  for (int i = 0; i < 100; ++i) {
+    Surfel surfel;
+    surfel.normal = glm::normalize(glm::vec3(any(random), any(random), any(random)));
+    surfel.radius = 2.5f;
+    const auto [s, t] = tangents(surfel);
+    EXPECT_NEAR(2.5, glm::length(s), 1e-12);
+    EXPECT_NEAR(2.5, glm::length(t), 1e-12);
+    EXPECT_NEAR(0, glm::dot(s, t), 1e-12);
+    EXPECT_NEAR(0, glm::dot(s, glm::dvec3(surfel.normal)), 1e-6);
+  }
+}
+
+TEST(Recorder, EveryAlgorithmIsASoundTraceOfTwoPasses) {
+  for (const Algorithm algorithm : {Algorithm::no_ewa, Algorithm::ewa_per_pixel, Algorithm::ewa_per_surfel}) {
+    const Trace trace = record(small_plane(algorithm), {}).trace;
+    EXPECT_NO_THROW(check_trace(trace, "recorded"));
+    const bool per_pixel = algorithm == Algorithm::ewa_per_pixel;
+    ASSERT_EQ(per_pixel ? 4u : 3u, trace.commands.size());
+    EXPECT_FALSE(std::get<Draw>(trace.commands[1]).state.color_write);
+    EXPECT_FALSE(std::get<Draw>(trace.commands[2]).state.depth_write);
+    EXPECT_EQ(per_pixel, std::holds_alternative<NormalizeOnHost>(trace.commands.back()));
+
+    const Rendered rendered = render(trace, {});
+    EXPECT_EQ(2u * 4 * 24 * 20,
+              rendered.counters.vertices);  // four a surfel and pass: two of six indices hit
+    EXPECT_EQ(2u * 2 * 24 * 20, rendered.counters.triangles);
+    EXPECT_GT(rendered.counters.fragments_passed, 1000u);
+  }
+}
+
+TEST(Recorder, DrawsInBatchesOfSixteenBitIndices) {
+  Scene scene = small_plane(Algorithm::ewa_per_pixel);
+  scene.surfels.resize(20000, scene.surfels.front());
+  const Trace trace = record(scene, {}).trace;
+  ASSERT_EQ(6u, trace.commands.size());
+  EXPECT_EQ(16384u * 6, std::get<Draw>(trace.commands[1]).index_count);
+  EXPECT_EQ(16384u * 4, std::get<Draw>(trace.commands[2]).base_vertex);
+  EXPECT_EQ((20000u - 16384u) * 6, std::get<Draw>(trace.commands[2]).index_count);
+}
+
+// At a surfel of a square grid with h = sqrt 2 spacings the weights within the cutoff sum to (1 + 4 exp(-1/4)
+// + 4 exp(-1/2)) / 2 pi = 1.041; four more of exp(-1) lie on the cutoff itself and may count: 1.275.
+TEST(Recorder, CapturedWeightsAreTheInverseSums) {
+  const Scene scene = small_plane(Algorithm::no_ewa);
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  formats.color = ColorFormat::float32;
+  const CapturedWeights captured = capture_weights(scene, formats);
+  EXPECT_EQ(scene.surfels.size(), captured.captured);
+  for (std::size_t row = 3; row < 17; ++row) {
+    for (std::size_t column = 3; column < 21; ++column) {
+      const float weight = captured.weights[row * 24 + column];
+      EXPECT_GT(weight, 0.99 / 1.275);
+      EXPECT_LT(weight, 1.01 / 1.041);
+    }
+  }
+  EXPECT_GT(captured.weights[0], 1.5f);  // a corner has a quarter of the neighbours
+}
+
+TEST(Recorder, HostileSurfelsLeaveNoNaN) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
+  Scene scene = small_plane(Algorithm::ewa_per_pixel);
+  for (const glm::vec3 position : {glm::vec3(nan, 0, 0), glm::vec3(huge, huge, huge), glm::vec3(0, 14, -20),
+                                   glm::vec3(0, 15, -21), glm::vec3(0, 13.9f, -19.8f)}) {
+    Surfel surfel = scene.surfels.front();
+    surfel.position = position;
+    scene.surfels.push_back(surfel);
+  }
+  for (const FrameFormat format : {FrameFormat::unorm8, FrameFormat::float32}) {
+    RenderOptions options;
+    options.formats.frame = format;
+    options.formats.color = format == FrameFormat::unorm8 ? ColorFormat::unorm8 : ColorFormat::float32;
+    const Rendered rendered = render(record(scene, options.formats).trace, options);
+    for (std::size_t pixel = 0; pixel < 64 * 64; ++pixel) {
+      for (const float channel : rendered.frame.color(pixel)) ASSERT_TRUE(std::isfinite(channel)) << pixel;
+    }
+    EXPECT_GT(rendered.counters.triangles_not_finite, 0u);
+    EXPECT_GT(rendered.counters.triangles_behind, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::traces
