@@ -70,6 +70,7 @@ function(splatscope_benchmarks folder)
   if(sources)
     add_executable(${folder}_benchmarks ${sources})
     target_link_libraries(${folder}_benchmarks PRIVATE ${ARGN} splatscope_options benchmark::benchmark_main)
+    target_compile_definitions(${folder}_benchmarks PRIVATE SPLATSCOPE_SOURCE="${CMAKE_SOURCE_DIR}")
   endif()
 endfunction()
 

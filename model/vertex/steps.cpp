@@ -5,7 +5,6 @@
 
 #include "model/error.h"
 #include "model/isa/opcode.h"
-#include "model/number/ieee.h"
 
 namespace splatscope::vertex {
 namespace {
@@ -173,59 +172,6 @@ Operand resolve_source(const StepSource& source, const Workspace& workspace, con
   return operand;
 }
 
-Vec4 evaluate_ieee(Operation operation, const std::array<Vec4, 3>& sources) {
-  const auto& [a, b, c] = sources;
-  const auto each = [&](auto&& function) {
-    return Vec4{function(std::size_t{0}), function(std::size_t{1}), function(std::size_t{2}),
-                function(std::size_t{3})};
-  };
-  const auto all = [](float value) { return Vec4{value, value, value, value}; };
-  switch (operation) {
-    case Operation::move:
-      return a;
-    case Operation::add:
-      return each([&](std::size_t i) { return ieee::add(a[i], b[i]); });
-    case Operation::multiply:
-      return each([&](std::size_t i) { return ieee::multiply(a[i], b[i]); });
-    case Operation::multiply_add:
-      return each([&](std::size_t i) { return ieee::multiply_add(a[i], b[i], c[i]); });
-    case Operation::dot3:
-      return all(ieee::dot3(a, b));
-    case Operation::dot4:
-      return all(ieee::dot4(a, b));
-    case Operation::minimum:
-      return each([&](std::size_t i) { return ieee::minimum(a[i], b[i]); });
-    case Operation::maximum:
-      return each([&](std::size_t i) { return ieee::maximum(a[i], b[i]); });
-    case Operation::less:
-      return each([&](std::size_t i) { return ieee::less(a[i], b[i]); });
-    case Operation::greater_equal:
-      return each([&](std::size_t i) { return ieee::greater_equal(a[i], b[i]); });
-    case Operation::reciprocal:
-      return all(ieee::reciprocal(a[0]));
-    case Operation::reciprocal_sqrt:
-      return all(ieee::reciprocal_sqrt(a[0]));
-    case Operation::expp:
-      return ieee::expp(a[0]);
-    case Operation::logp:
-      return ieee::logp(a[0]);
-    case Operation::lit:
-      return ieee::lit(a);
-    case Operation::distance:
-      return ieee::distance(a, b);
-    case Operation::exponent:
-      return all(ieee::exp2(a[0]));
-    case Operation::logarithm:
-      return all(ieee::log2_magnitude(a[0]));
-    case Operation::fraction:
-      return each([&](std::size_t i) { return ieee::fraction(a[i]); });
-    case Operation::load_address:
-    case Operation::gather_constant:
-      break;
-  }
-  throw ModelError("not an arithmetic operation");
-}
-
 }  // namespace
 
 std::vector<Step> make_steps(const isa::Program& program) {
@@ -265,10 +211,6 @@ void run_address_step(const Step& step, Workspace& workspace, const InputBatch& 
     for (std::size_t component = 0; component < 4; ++component)
       workspace.scratch[component][lane] = value[component];
   }
-}
-
-Vec4 evaluate(Operation operation, Arithmetic, const std::array<Vec4, 3>& sources) {
-  return evaluate_ieee(operation, sources);
 }
 
 void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last) {

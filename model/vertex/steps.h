@@ -100,5 +100,6 @@ void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last);
 // One call for vertices 0..count-1 (rounded up to whole SIMD registers) on the best SIMD target of this
 // machine.
 void run_simd_ieee(const Call& call, int count);
+void run_simd_nv20(const Call& call, int count);
 
 }  // namespace splatscope::vertex

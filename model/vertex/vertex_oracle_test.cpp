@@ -94,6 +94,14 @@ TEST(VertexOracle, InstructionsInIeee) {
   EXPECT_EQ(compared, 1775);
 }
 
+TEST(VertexOracle, InstructionsOfTheNv20BitForBit) {
+  const json vectors = oracle("vertex_ops.json");
+  ASSERT_EQ(vectors["cases"].size(), 1776u);
+  for (const json& test : vectors["cases"])
+    EXPECT_EQ(hex_of(run_operation(test, Arithmetic::nv20)), test["nv20"].get<std::vector<std::string>>())
+        << test;
+}
+
 // Programs' vectors: constants and inputs, the rest 0 (inputs: 0,0,0,1).
 Vec4 run_program(const json& test, const isa::Program& program, Arithmetic arithmetic) {
   Run run;
@@ -123,6 +131,16 @@ TEST(VertexOracle, ProgramsInIeee) {
             << test;
     }
   }
+}
+
+TEST(VertexOracle, ProgramsOfTheNv20BitForBit) {
+  const json vectors = oracle("vertex_programs.json");
+  ASSERT_FALSE(vectors["cases"].empty());
+  for (const json& test : vectors["cases"])
+    EXPECT_EQ(
+        hex_of(run_program(test, isa::load(test["program"].get<std::string>(), "case"), Arithmetic::nv20)),
+        test["nv20"].get<std::vector<std::string>>())
+        << test;
 }
 
 }  // namespace

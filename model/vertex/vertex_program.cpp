@@ -79,7 +79,9 @@ VertexProgram& VertexProgram::operator=(VertexProgram&&) noexcept = default;
 
 void VertexProgram::run(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out,
                         int count) const {
-  decoded_->run(constants, in, out, count, [&](const Call& call) { run_simd_ieee(call, count); });
+  decoded_->run(constants, in, out, count, [&](const Call& call) {
+    decoded_->arithmetic == Arithmetic::ieee ? run_simd_ieee(call, count) : run_simd_nv20(call, count);
+  });
 }
 
 void VertexProgram::run_scalar(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out,
