@@ -79,8 +79,8 @@ TEST(Programs, projection_is_that_of_the_view) {
         run_quads(load_program(kPlainProgram), Arithmetic::ieee, splat_constants(view, 1.0, 0.0), surfels);
     const glm::dvec4 clip(quads[0][0].position);  // no tangents: every corner is o
     const glm::dvec2 window = view.window(o);
-    EXPECT_NEAR((clip.x / clip.w + 1) * 0.5 * view.width, window.x, 1e-3);
-    EXPECT_NEAR((1 - clip.y / clip.w) * 0.5 * view.height, window.y, 1e-3);
+    EXPECT_NEAR(view.center().x + 0.5 * view.width * clip.x / clip.w, window.x, 1e-3);
+    EXPECT_NEAR(view.center().y - 0.5 * view.height * clip.y / clip.w, window.y, 1e-3);
     EXPECT_NEAR(clip.w, depth, 1e-5);
     EXPECT_NEAR(clip.z / clip.w, (depth - 0.5) / (20.0 - 0.5) * 20.0 / depth, 1e-5);
   }
