@@ -58,8 +58,8 @@ glm::vec3 normal_of(std::span<const Surfel> surfels, const Neighbours& near, std
   }
   points.colwise() -= points.rowwise().mean().eval();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(points * points.transpose());
-  const Eigen::Vector3d spread = eigen.eigenvalues();  // ascending
-  if (!(spread[1] > 1e-12 * spread[2])) return {};     // a line or a point has no normal
+  const Eigen::Vector3d& spread = eigen.eigenvalues();  // ascending
+  if (!(spread[1] > 1e-12 * spread[2])) return {};      // a line or a point has no normal
   const Eigen::Vector3d normal = eigen.eigenvectors().col(0);
   return {normal.x(), normal.y(), normal.z()};
 }

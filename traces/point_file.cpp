@@ -145,7 +145,7 @@ void skip_list(PlyValues& values, const PlyProperty& property) {
   const double count = values.next(property.count_type);
   if (!(count >= 0 && count <= 4294967295.0))
     values.fail(fmt::format("a list of {} items", count), "0 or more");
-  for (double i = 0; i < count; ++i) values.next(property.type);
+  for (auto left = static_cast<std::uint64_t>(count); left > 0; --left) values.next(property.type);
 }
 
 void skip_element(PlyValues& values, const PlyElement& element) {

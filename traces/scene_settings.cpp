@@ -86,21 +86,30 @@ std::string names_of(std::string_view table) {
   return names;
 }
 
+const SceneKey* find_key(std::string_view table, std::string_view name) {
+  const auto keys = scene_keys();
+  const auto found = std::find_if(
+      keys.begin(), keys.end(), [&](const SceneKey& key) { return key.table == table && key.name == name; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+bool is_table(std::string_view name) {
+  const auto keys = scene_keys();
+  return std::any_of(keys.begin(), keys.end(), [&](const SceneKey& key) { return key.table == name; });
+}
+
 void read_table(SceneSettings& settings, std::string_view name, const toml::table& table,
                 std::string_view file) {
-  const auto keys = scene_keys();
   for (const auto& [key, node] : table) {
-    const auto found = std::find_if(keys.begin(), keys.end(), [&](const SceneKey& declared) {
-      return declared.table == name && declared.name == key.str();
-    });
-    if (found == keys.end())
+    const SceneKey* declared = find_key(name, key.str());
+    if (!declared)
       throw UserError(
           file, line(key),
           fmt::format("unknown key \"{}\" in [{}], expected one of: {}", key.str(), name, names_of(name)));
-    if (!std::visit(Store{settings, node}, found->value))
+    if (!std::visit(Store{settings, node}, declared->value))
       throw UserError(
           file, line(node),
-          fmt::format("{}.{} is {}, expected {}", name, key.str(), shown(node), expectation(*found)));
+          fmt::format("{}.{} is {}, expected {}", name, key.str(), shown(node), expectation(*declared)));
   }
 }
 
@@ -132,10 +141,7 @@ SceneSettings parse_settings(std::string_view text, std::string_view file) {
   }
   SceneSettings settings = default_settings();
   for (const auto& [name, node] : root) {
-    const auto keys = scene_keys();
-    const bool known =
-        std::any_of(keys.begin(), keys.end(), [&](const SceneKey& key) { return key.table == name.str(); });
-    if (!known)
+    if (!is_table(name.str()))
       throw UserError(file, line(name),
                       fmt::format("unknown table \"{}\", expected one of: {}", name.str(), names_of("")));
     if (!node.is_table())

@@ -42,9 +42,10 @@ TEST(Scene, PlaneIsCentredWithSquaresOfTwoColours) {
       "plane.toml");
   ASSERT_EQ(scene.surfels.size(), 24u);
   glm::vec3 sum(0);
+  std::size_t i = 0;
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 6; ++column) {
-      const Surfel& s = scene.surfels[static_cast<std::size_t>(row * 6 + column)];
+      const Surfel& s = scene.surfels[i++];
       EXPECT_EQ(s.position, glm::vec3(column - 2.5, 0, row - 1.5));
       EXPECT_EQ(s.normal, glm::vec3(0, 1, 0));
       EXPECT_FLOAT_EQ(s.radius, std::sqrt(2.0f));
