@@ -2,12 +2,18 @@
 
 #include <CLI/CLI.hpp>
 
-// Each command adds itself to the program's command line: its options, its help with an example, and what it
-// calls. A command has no logic of its own. It reports bad input by throwing UserError, and sets `status` to
-// 1 where a comparison did not hold.
 namespace splatscope::app {
 
-void add_scene_command(CLI::App& app, int& status);
-void add_trace_command(CLI::App& app, int& status);
+// What all commands share.
+struct Invocation {
+  bool quiet = false;  // no progress bar
+  int status = 0;      // of exit; 1 where a comparison did not hold
+};
+
+// Each command adds itself to the program's command line: its options, its help with an example, and what it
+// calls. A command has no logic of its own. It reports bad input by throwing UserError.
+void add_record_command(CLI::App& app, Invocation& invocation);
+void add_scene_command(CLI::App& app);
+void add_trace_command(CLI::App& app);
 
 }  // namespace splatscope::app

@@ -13,15 +13,18 @@ int run(int argc, char** argv) {
   using namespace splatscope::app;
   CLI::App app("splatscope: a cycle-level simulator of a programmable GPU of 2002, and EWA splatting on it");
   app.require_subcommand(1);
-  int status = kDone;
-  add_scene_command(app, status);
-  add_trace_command(app, status);
+  app.fallthrough();  // --quiet may stand after the command
+  Invocation invocation;
+  app.add_flag("--quiet", invocation.quiet, "no progress bar");
+  add_record_command(app, invocation);
+  add_trace_command(app);
+  add_scene_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }
-  return status;
+  return invocation.status;
 }
 
 }  // namespace

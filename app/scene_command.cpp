@@ -5,7 +5,7 @@
 
 namespace splatscope::app {
 
-void add_scene_command(CLI::App& app, int&) {
+void add_scene_command(CLI::App& app) {
   CLI::App* scene = app.add_subcommand("scene", "about scene files");
   scene->require_subcommand(1);
   CLI::App* keys = scene->add_subcommand("keys", "every key of a scene file, as a Markdown table");

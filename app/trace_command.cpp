@@ -6,7 +6,7 @@
 
 namespace splatscope::app {
 
-void add_trace_command(CLI::App& app, int&) {
+void add_trace_command(CLI::App& app) {
   CLI::App* trace = app.add_subcommand("trace", "look at traces");
   trace->require_subcommand(1);
   CLI::App* info = trace->add_subcommand("info", "what a trace holds");

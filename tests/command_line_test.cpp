@@ -18,7 +18,7 @@ void expect_refused(const Outcome& outcome, const std::string& part) {
 }
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
-  const std::vector<std::vector<std::string>> commands = {{"trace", "info"}, {"scene", "keys"}};
+  const std::vector<std::vector<std::string>> commands = {{"record"}, {"trace", "info"}, {"scene", "keys"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = run_program(command);
@@ -47,13 +47,68 @@ TEST(CommandLine, TraceThatIsNone) {
   expect_refused(run_program({"trace", "info", "a.trace"}, folder.path()), "a.trace: is no trace");
 }
 
+struct BadScene {
+  const char* text;
+  const char* error;  // after the scene's name
+};
+
+constexpr BadScene kBadScenes[] = {
+    {"[frame]\nwidht = 5\n", ":2: unknown key \"widht\" in [frame], expected one of: width"},
+    {"[lights]\n", ":1: unknown table \"lights\", expected one of: surfels"},
+    {"[frame]\nwidth = \"wide\"\n", ":2: frame.width is 'wide', expected a whole number from 1 to 4096"},
+    {"[frame]\nwidth = 5000\n", ":2: frame.width is 5000, expected a whole number from 1 to 4096"},
+    {"[camera]\nfov_y_degrees = nan\n", ":2: camera.fov_y_degrees is nan, expected a number"},
+    {"[frame]\nwidth = = 4\n", ":2: "},
+    {"[surfels]\nfile = \"none.ply\"\n", "none.ply: cannot be read, expected a PLY file"},
+};
+
+TEST(CommandLine, WrongScenesLeaveNoTrace) {
+  const ScratchFolder folder;
+  expect_refused(run_program({"record", "none.toml", "-o", "a.trace"}, folder.path()),
+                 "none.toml: no such file");
+  for (const BadScene& bad : kBadScenes) {
+    folder.file("bad.toml", bad.text);
+    expect_refused(run_program({"record", "bad.toml", "-o", "a.trace"}, folder.path()), bad.error);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"bad.toml"});
+  }
+}
+
+TEST(CommandLine, UnwritableTraceIsNotedBeforeTheWork) {
+  const ScratchFolder folder;
+  const std::string scene = "checkerboard-no-ewa";
+  expect_refused(run_program({"record", scene, "-o", "none/a.trace"}, folder.path()),
+                 "none/a.trace: cannot be written");
+  expect_refused(run_program({"record", scene, "-o", folder.path().string()}), "is a folder, expected");
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(CommandLine, RecordedTraceTellsWhatItHolds) {
+  const ScratchFolder folder;
+  folder.file(
+      "points.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float radius\nend_header\n"
+      "0 0 0  0 0 1  1\n0 nan 0  0 0 1  1\n0 0 0  0 0 0  1\n");
+  folder.file("points.toml",
+              "[surfels]\nfile = \"points.ply\"\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n"
+              "[frame]\nwidth = 64\nheight = 32\n");
+  const Outcome recorded = run_program({"record", "points.toml", "-o", "points.trace"}, folder.path());
+  EXPECT_EQ(recorded.status, 0) << recorded.error;
+  EXPECT_EQ(recorded.out, "points.trace: 1 surfels, 2 left out (1 not finite, 1 without a normal)\n");
+  EXPECT_EQ(recorded.error, "") << "no progress bar on a pipe";
+  const Outcome info = run_program({"trace", "info", "points.trace"}, folder.path());
+  EXPECT_EQ(info.status, 0) << info.error;
+  EXPECT_NE(info.out.find("frame      64 x 32"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("draw 2 triangles, splat_ewa.vs"), std::string::npos) << info.out;
+}
+
 // The user's guide holds what the program prints.
 TEST(Documentation, SceneKeysAreThoseOfTheProgram) {
   const Outcome outcome = run_program({"scene", "keys"});
   EXPECT_EQ(outcome.status, 0);
   const std::string page = text_of(std::string(SPLATSCOPE_SOURCE) + "/docs/scene_files.md");
   EXPECT_NE(page.find("-->\n" + outcome.out + "<!-- end -->"), std::string::npos)
-      << "docs/scene_files.md is not what `splatscope scene keys` prints";
+      << "docs/scene_files.md is not what `splatscope scene keys` prints: run docs/update";
 }
 
 }  // namespace

@@ -59,6 +59,18 @@ Scene load_scene(const std::filesystem::path& name_or_path) {
   return parse_scene(read_text(name_or_path), name_or_path);
 }
 
+std::string describe(const SkipCounts& skipped) {
+  if (skipped.total() == 0) return "none left out";
+  std::string reasons;
+  const auto add = [&](std::size_t count, std::string_view reason) {
+    if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+  };
+  add(skipped.not_finite, "not finite");
+  add(skipped.zero_radius, "of radius 0");
+  add(skipped.zero_normal, "without a normal");
+  return fmt::format("{} left out ({})", skipped.total(), reasons);
+}
+
 std::string_view name(Algorithm algorithm) {
   constexpr std::string_view kNames[] = {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"};
   return kNames[static_cast<int>(algorithm)];

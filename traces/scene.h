@@ -75,6 +75,9 @@ Scene load_scene(const std::filesystem::path& name_or_path);
 // The same from text; `file` is for messages and for finding the surfel file.
 Scene parse_scene(std::string_view text, const std::filesystem::path& file);
 
+// "2 left out (1 not finite, 1 of radius 0)", or "none left out".
+std::string describe(const SkipCounts& skipped);
+
 // "no-ewa", "ewa-per-pixel", "ewa-per-surfel": as in scene files and results.
 std::string_view name(Algorithm algorithm);
 
