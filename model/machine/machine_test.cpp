@@ -1,0 +1,133 @@
+#include "model/machine/machine.h"
+
+#include <gtest/gtest.h>
+
+#include "model/error.h"
+#include "model/machine/parameters.h"
+
+namespace splatscope::machine {
+namespace {
+
+std::string message_of(std::string_view text) {
+  try {
+    parse(text, "m.toml");
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string set_message(std::string_view assignment) {
+  Machine machine;
+  try {
+    set(machine, assignment);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Machine, BuiltInFilesGiveEveryParameterWithItsSource) {
+  ASSERT_EQ(built_in_names().size(), 2u);
+  for (const auto name : built_in_names()) {
+    int fitted = 0;
+    for (const auto& value : describe(load(name))) {
+      EXPECT_NE(value.origin.confidence, "default") << name << " " << value.name;
+      EXPECT_FALSE(value.origin.source.empty()) << name << " " << value.name;
+      EXPECT_EQ(value.origin.confidence == "fitted", !value.origin.fitted_to.empty())
+          << name << " " << value.name;
+      fitted += value.origin.confidence == "fitted";
+    }
+    EXPECT_LE(fitted, 2) << name;
+  }
+}
+
+TEST(Machine, BuiltInFilesHoldThePublishedFigures) {
+  const Machine ti = load("geforce4-ti4400");
+  EXPECT_EQ(ti.name, "geforce4-ti4400");
+  EXPECT_EQ(ti.numbers.vertex_arithmetic, Arithmetic::nv20);
+  EXPECT_EQ(ti.vertex.units, 2);
+  EXPECT_EQ(ti.vertex.cache_entries, 18);
+  EXPECT_EQ(ti.clock.core_megahertz, 275);
+  for (const auto name : built_in_names()) {
+    const Machine machine = load(name);
+    EXPECT_EQ(machine.memory.channels * machine.memory.channel_bytes_per_clock, 32) << name;  // 8.8 GB/s
+  }
+}
+
+TEST(Machine, DefaultsLieInTheirRanges) {
+  for (const auto& value : describe(Machine{})) {
+    Machine machine;
+    EXPECT_NO_THROW(set(machine, value.name + "=" + value.value)) << value.name;
+  }
+}
+
+TEST(Machine, EveryNameIsDeclaredOnce) {
+  std::map<std::string_view, int> seen;
+  for (const auto& parameter : parameters()) EXPECT_EQ(++seen[parameter.name], 1) << parameter.name;
+}
+
+TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
+  EXPECT_EQ(message_of("\n[vertex]\nunits = 99\n"),
+            "m.toml:3: vertex.units is out of range (99), expected an integer, 1 to 16");
+  EXPECT_EQ(message_of("[vertex]\nunits = { value = 2.5 }\n"),
+            "m.toml:2: vertex.units has the wrong type, expected an integer, 1 to 16");
+  EXPECT_EQ(message_of("[agp]\nlanes = 2\n"),
+            "m.toml:2: unknown key agp.lanes, expected one of bytes_per_clock, latency_nanoseconds, queue");
+  EXPECT_EQ(message_of("[numbers]\n\nframe = \"rgb\"\n"),
+            "m.toml:3: numbers.frame is \"rgb\", expected a string, unorm8 or float32");
+  EXPECT_EQ(message_of("[vertex]\nunits = { value = 2, confidence = \"sure\" }\n"),
+            "m.toml:2: confidence of vertex.units is \"sure\", expected published, measured, inferred, "
+            "fitted, stand-in");
+  EXPECT_EQ(message_of("[vertex]\nunits = { confidence = \"fitted\" }\n"),
+            "m.toml:2: vertex.units has no value, expected { value = ..., confidence = ..., source = ... }");
+  EXPECT_EQ(message_of("[memory]\nchannels = 3\n"), "m.toml: memory.channels is 3, expected a power of two");
+  EXPECT_TRUE(message_of("[shader]\nunits = 2\n")
+                  .starts_with("m.toml:1: unknown key shader, expected title, base or"));
+  EXPECT_TRUE(message_of("title = \"a\"\n[vertex\n").starts_with("m.toml:2: "));
+  EXPECT_EQ(message_of("base = \"voodoo\"\n"),
+            "m.toml:1: no machine \"voodoo\", expected geforce4-ti4400 or radeon-8500");
+}
+
+TEST(Machine, AFileMayChangeABase) {
+  const Machine machine = parse("base = \"radeon-8500\"\n[vertex]\nunits = 4\n", "dir/wide.toml");
+  EXPECT_EQ(machine.name, "wide");
+  EXPECT_EQ(machine.vertex.units, 4);
+  EXPECT_EQ(machine.memory.channels, 2);
+}
+
+TEST(Machine, SetChangesOneParameter) {
+  Machine machine = load("geforce4-ti4400");
+  set(machine, "vertex.units=4");
+  set(machine, "numbers.frame=float32");
+  set(machine, "host.command_nanoseconds=5");
+  set(machine, "depth.fast_clear=false");
+  EXPECT_EQ(machine.vertex.units, 4);
+  EXPECT_EQ(machine.numbers.frame, FrameFormat::float32);
+  EXPECT_EQ(machine.host.command_nanoseconds, 5);
+  EXPECT_FALSE(machine.depth.fast_clear);
+  for (const auto& value : describe(machine)) {
+    if (value.name == "vertex.units") EXPECT_EQ(value.origin.confidence, "set");
+  }
+}
+
+TEST(Machine, SetRefusesWhatAFileMayNotHold) {
+  EXPECT_EQ(set_message("vertex.units"),
+            "--set: \"vertex.units\" has no value, expected key=value as in vertex.units=4");
+  EXPECT_EQ(set_message("vertex.units=0"),
+            "--set: vertex.units is out of range (0), expected an integer, 1 to 16");
+  EXPECT_EQ(set_message("vertex.units=two"),
+            "--set: vertex.units has no valid value in \"vertex.units=two\", expected an integer, 1 to 16");
+  EXPECT_EQ(set_message("agp.units=2"),
+            "--set: unknown key agp.units, expected one of bytes_per_clock, latency_nanoseconds, queue");
+  EXPECT_EQ(set_message("texture.line_bytes=128"),
+            "--set: texture.line_bytes is 128, expected at most memory.interleave_bytes (64)");
+}
+
+TEST(Machine, AMissingFileIsAUsersError) {
+  EXPECT_THROW(load("no/such.toml"), UserError);
+  EXPECT_THROW(load("voodoo"), UserError);
+}
+
+}  // namespace
+}  // namespace splatscope::machine

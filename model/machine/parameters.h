@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "model/machine/machine.h"
+
+namespace splatscope::machine {
+
+struct IntegerField {
+  int& (*of)(Machine&);
+  int least, most;
+};
+struct RealField {
+  double& (*of)(Machine&);
+  double least, most;
+};
+struct SwitchField {
+  bool& (*of)(Machine&);
+};
+// One of a few names, kept as an enumeration: the place of the name in `names` is its value.
+struct ChoiceField {
+  std::span<const std::string_view> names;
+  int (*get)(const Machine&);
+  void (*set)(Machine&, int);
+};
+
+// The one declaration of a parameter: its name in files, its unit, where it is kept, what it may be, what it
+// does. Its default is the member's initialiser in machine.h.
+struct Parameter {
+  std::string_view name;
+  std::string_view unit;
+  std::variant<IntegerField, RealField, SwitchField, ChoiceField> field;
+  std::string_view what;
+};
+
+std::span<const Parameter> parameters();
+
+}  // namespace splatscope::machine

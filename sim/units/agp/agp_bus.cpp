@@ -1,0 +1,52 @@
+#include "sim/units/agp/agp_bus.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace splatscope::sim {
+
+AgpBus::AgpBus(std::string name, const Machine::Agp& spec, double cycles_per_nanosecond)
+    : Unit(std::move(name)),
+      spec_(spec),
+      latency_(static_cast<Cycle>(std::ceil(spec.latency_nanoseconds * cycles_per_nanosecond))) {}
+
+bool AgpBus::serve(Cycle now, const Client& client) {
+  if (!client.requests->can_pop(now)) return false;
+  const MemoryRequest request = client.requests->pop(now);
+  const auto rate = static_cast<std::uint32_t>(spec_.bytes_per_clock);
+  const Cycle length = (request.bytes + rate - 1) / rate;
+  data_free_ = std::max(now + latency_, data_free_) + std::max<Cycle>(length, 1);
+  on_the_way_.push_back(data_free_);
+  ++reads_;
+  data_clocks_ += length;
+  event(now, data_free_);
+  // The core sees the data at its first edge after the last transfer.
+  ClockDomain& core = client.port->client().domain();
+  const Cycle at = core.first_after(domain().time(data_free_));
+  domain().lower_limit(core.time(at));
+  client.port->answer(request.slot, at);
+  return true;
+}
+
+// One request a clock, the clients in turn.
+Step AgpBus::advance(Cycle now) {
+  while (!on_the_way_.empty() && on_the_way_.front() <= now) on_the_way_.pop_front();
+  if (on_the_way_.size() == static_cast<std::size_t>(spec_.queue)) return busy(on_the_way_.front());
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    const std::size_t client = (turn_ + i) % clients_.size();
+    if (!serve(now, clients_[client])) continue;
+    turn_ = (client + 1) % clients_.size();
+    return busy(now + 1);
+  }
+  Cycle next = kNever;
+  for (const Client& client : clients_) next = std::min(next, client.requests->next_visible());
+  if (on_the_way_.empty()) return idle(next);
+  return busy(std::min(next, on_the_way_.front()));
+}
+
+std::vector<Statistic> AgpBus::statistics() const {
+  return {{"reads", "requests", "of host memory", reads_},
+          {"data_clocks", "bus clocks", "in which the bus carried data", data_clocks_}};
+}
+
+}  // namespace splatscope::sim

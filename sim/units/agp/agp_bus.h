@@ -1,0 +1,37 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "model/machine/machine.h"
+#include "sim/units/memory/memory_port.h"
+
+namespace splatscope::sim {
+
+// The AGP bus reading host memory for the graphics core: one request after the other on the data lines, latencies
+// overlapping. On the bus clock.
+class AgpBus final : public Unit {
+ public:
+  AgpBus(std::string name, const Machine::Agp& spec, double cycles_per_nanosecond);
+  void connect(MemoryPort& port, Channel<MemoryRequest>& requests) { clients_.push_back({&port, &requests}); }
+
+  Step advance(Cycle now) override;
+  std::vector<Statistic> statistics() const override;
+
+ private:
+  struct Client {
+    MemoryPort* port;
+    Channel<MemoryRequest>* requests;
+  };
+  bool serve(Cycle now, const Client& client);
+
+  Machine::Agp spec_;
+  Cycle latency_;
+  std::vector<Client> clients_;
+  std::size_t turn_ = 0;
+  Cycle data_free_ = 0;
+  std::deque<Cycle> on_the_way_;  // ends of the requests on the bus
+  std::uint64_t reads_ = 0, data_clocks_ = 0;
+};
+
+}  // namespace splatscope::sim

@@ -1,0 +1,122 @@
+#include "sim/units/cache/cache_pipe.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace splatscope::sim {
+
+CachePipe::CachePipe(const Spec& spec)
+    : items_(static_cast<std::uint32_t>(spec.items)),
+      ways_(static_cast<std::uint32_t>(spec.ways)),
+      line_bytes_(spec.line_bytes),
+      tags_(static_cast<std::size_t>(spec.lines)),
+      set_mask_(static_cast<std::uint32_t>(spec.lines / spec.ways) - 1),
+      fifo_(std::bit_ceil(items_)) {}
+
+void CachePipe::connect(MemoryPort& port, std::uint32_t address) {
+  port_ = &port;
+  address_ = address;
+  part_bytes_ = std::min(line_bytes_, port.interleave());
+}
+
+CachePipe::Way* CachePipe::find(std::uint32_t line) {
+  Way* set = &tags_[(line & set_mask_) * ways_];
+  for (std::uint32_t way = 0; way < ways_; ++way) {
+    if (set[way].line == line) return &set[way];
+  }
+  return nullptr;
+}
+
+CachePipe::Way& CachePipe::victim(std::uint32_t line) {
+  Way* set = &tags_[(line & set_mask_) * ways_];
+  Way* oldest = set;
+  for (std::uint32_t way = 0; way < ways_; ++way) {
+    if (set[way].line == kNoLine) return set[way];
+    if (set[way].used < oldest->used) oldest = &set[way];
+  }
+  return *oldest;
+}
+
+const Unit* CachePipe::move(Cycle now, std::uint32_t line, bool write) {
+  for (; moved_ < line_bytes_; moved_ += part_bytes_) {
+    const std::uint32_t address = address_ + line * line_bytes_ + moved_;
+    if (const Unit* unit = port_->in_the_way(now, address)) {
+      next_try_ = port_->next_free(address);
+      return unit;
+    }
+    if (write) {
+      port_->write(now, address, part_bytes_);
+    } else {
+      port_->read(now, address, part_bytes_);
+      ++entering_reads_;
+    }
+  }
+  moved_ = 0;
+  return nullptr;
+}
+
+const Unit* CachePipe::touch(Cycle now, std::uint32_t line, bool fetch, bool dirty) {
+  if (Way* way = find(line)) {
+    ++touches_;
+    way->used = ++clock_;
+    way->dirty |= dirty;
+    return nullptr;
+  }
+  Way& way = victim(line);
+  if (way.dirty) {
+    if (const Unit* unit = move(now, way.line, true)) return unit;
+    ++write_backs_;
+    way.dirty = false;
+  }
+  if (fetch) {
+    if (const Unit* unit = move(now, line, false)) return unit;
+  }
+  ++touches_;
+  ++misses_;
+  way = {line, ++clock_, dirty};
+  return nullptr;
+}
+
+void CachePipe::enter(std::uint32_t item) {
+  fifo_[tail_++ & (fifo_.size() - 1)] = {item, entering_reads_};
+  entering_reads_ = 0;
+}
+
+bool CachePipe::is_ready(Cycle now) {
+  Waiting& waiting = fifo_[head_ & (fifo_.size() - 1)];
+  while (waiting.reads != 0 && port_->oldest_ready() <= now) {
+    port_->release_oldest();
+    --waiting.reads;
+  }
+  return waiting.reads == 0;
+}
+
+Cycle CachePipe::next_ready() {
+  const Cycle ready = port_->oldest_ready();
+  if (ready == kNever) port_->await_oldest();
+  return ready;
+}
+
+bool CachePipe::flush(Cycle now) {
+  for (; flush_at_ < tags_.size(); ++flush_at_) {
+    Way& way = tags_[flush_at_];
+    if (!way.dirty) continue;
+    if (move(now, way.line, true)) {
+      next_flush_ = next_try_;
+      return true;
+    }
+    ++write_backs_;
+    way.dirty = false;
+    next_flush_ = now + 1;
+    return true;
+  }
+  next_flush_ = port_->writes_done();
+  if (next_flush_ == kNever) port_->await_writes();
+  if (next_flush_ > now) return true;
+  flush_at_ = 0;
+  return false;
+}
+
+void CachePipe::invalidate() { std::fill(tags_.begin(), tags_.end(), Way{}); }
+
+}  // namespace splatscope::sim

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/kernel/channel.h"
+#include "sim/units/blend/blend_unit.h"
+#include "sim/units/depth/depth_test.h"
+#include "sim/units/draw_unit.h"
+
+namespace splatscope::sim {
+
+enum class OrderKind : std::uint8_t { draw, clear, flush };
+
+// What the host tells the command processor: a command of the trace, or to write the caches back.
+struct Order {
+  OrderKind kind = OrderKind::draw;
+  std::uint32_t job = 0;  // of a draw, which
+};
+
+// Takes orders from the host one at a time and reports each one when the pipeline has drained. Called after all other
+// units of its domain, so that what it begins is seen by them from the next cycle on.
+class CommandProcessor final : public Unit {
+ public:
+  // The surfaces that a clear writes; 0 bytes: nothing to write (marked, or not there).
+  struct Surface {
+    std::uint32_t address = 0;
+    std::uint32_t bytes = 0;
+  };
+
+  CommandProcessor(std::string name, Completion& completion);
+  void connect(Channel<Order>& from_host, Channel<std::uint32_t>& to_host, MemoryPort& port);
+  void set_draws(const std::vector<DrawJob>& jobs, std::vector<DrawUnit*> units);
+  // Null where the machine of this trace has none.
+  void set_frame(DepthTest* depth, bool fast_depth_clear, BlendUnit* blend, std::vector<Surface> cleared);
+
+  Step advance(Cycle now) override;
+  std::vector<Statistic> statistics() const override;
+  std::string state() const override;
+
+ private:
+  enum class Phase : std::uint8_t { waiting, working, filling, reporting };
+
+  void begin(Cycle now, const Order& order);
+  void begin_draw(Cycle now, const DrawJob& job);
+  void begin_flush(Cycle now);
+  void begin_clear();
+  bool fill(Cycle now);
+
+  Completion& completion_;
+  Channel<Order>* from_host_ = nullptr;
+  Channel<std::uint32_t>* to_host_ = nullptr;
+  MemoryPort* port_ = nullptr;
+  const std::vector<DrawJob>* jobs_ = nullptr;
+  std::vector<DrawUnit*> units_;
+  DepthTest* depth_ = nullptr;
+  bool fast_depth_clear_ = false;
+  BlendUnit* blend_ = nullptr;
+  std::vector<Surface> cleared_;
+
+  Phase phase_ = Phase::waiting;
+  std::size_t surface_ = 0;     // of the fill
+  std::uint32_t filled_ = 0;    // bytes of it
+  std::uint32_t orders_ = 0;
+  std::uint64_t bytes_filled_ = 0;
+};
+
+}  // namespace splatscope::sim

@@ -1,0 +1,96 @@
+#include "sim/units/depth/depth_test.h"
+
+#include <algorithm>
+
+namespace splatscope::sim {
+
+DepthTest::DepthTest(std::string name, Completion& completion, const Machine::Depth& spec, const FrameLines& lines,
+                     int quads_per_clock)
+    : DrawUnit(std::move(name), completion),
+      lines_(lines),
+      quads_per_clock_(quads_per_clock),
+      cache_({spec.cache_lines, spec.cache_ways, lines.line_bytes(), spec.pending}),
+      cleared_(lines.lines(), false) {}
+
+void DepthTest::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port,
+                        std::uint32_t address) {
+  in_ = &in;
+  out_ = out;
+  cache_.connect(port, address);
+}
+
+std::uint64_t DepthTest::start(const DrawJob& job) { return job.work->quads.size(); }
+
+void DepthTest::clear(bool fast) {
+  cache_.invalidate();
+  std::fill(cleared_.begin(), cleared_.end(), fast);
+}
+
+bool DepthTest::leave(Cycle now) {
+  if (cache_.empty() || !cache_.is_ready(now)) return false;
+  const QuadWork& quad = job().work->quads[cache_.oldest()];
+  const bool colored = is_colored(job(), quad);
+  if (colored && !out_->can_push(now)) return false;
+  const std::uint32_t number = cache_.leave();
+  if (colored) out_->push(now, number);
+  passed_ += quad.passed != 0;
+  event(now, number);
+  item_done(now);
+  return true;
+}
+
+bool DepthTest::enter(Cycle now) {
+  if (!cache_.has_room() || !in_->can_pop(now)) return false;
+  const std::uint32_t number = in_->front();
+  const DrawState& state = job().draw->state;
+  if (state.depth_test || state.depth_write) {
+    const QuadWork& quad = job().work->quads[number];
+    const std::uint32_t line = lines_.line_of(quad);
+    const bool writes = state.depth_write && quad.passed != 0;
+    in_the_way_ = cache_.touch(now, line, !cleared_[line], writes);
+    if (in_the_way_) return false;
+    if (writes) cleared_[line] = false;
+    ++tested_;
+  }
+  cache_.enter(in_->pop(now));
+  return true;
+}
+
+Step DepthTest::flush(Cycle now) {
+  if (cache_.flush(now)) return busy(cache_.next_flush());
+  flushing_ = false;
+  completion().finish(now);
+  return busy(now + 1);
+}
+
+Step DepthTest::advance(Cycle now) {
+  if (flushing_) return flush(now);
+  in_the_way_ = nullptr;
+  bool moved = false;
+  for (int i = 0; i < quads_per_clock_ && leave(now); ++i) moved = true;
+  for (int i = 0; i < quads_per_clock_ && enter(now); ++i) moved = true;
+  if (moved) return busy(now + 1);
+
+  Cycle next = kNever;
+  if (in_the_way_) {
+    next = cache_.next_try();
+  } else if (cache_.has_room()) {
+    next = in_->next_visible();
+  }
+  if (cache_.empty()) return in_the_way_ ? blocked(*in_the_way_, next) : nothing_to_take(next);
+  if (cache_.is_ready(now)) return blocked(out_->consumer(), std::min(next, out_->next_free()));
+  return blocked(cache_.server(), std::min(next, cache_.next_ready()));
+}
+
+std::vector<Statistic> DepthTest::statistics() const {
+  return {{"tested", "quads", "looked up in the depth cache", tested_},
+          {"passed", "quads", "with a pixel that passed", passed_},
+          {"misses", "lines", "that the depth cache did not hold", cache_.misses()},
+          {"write_backs", "lines", "written to memory", cache_.write_backs()}};
+}
+
+std::string DepthTest::state() const {
+  return cache_.empty() ? "" : "oldest quad " + std::to_string(cache_.oldest());
+}
+
+}  // namespace splatscope::sim

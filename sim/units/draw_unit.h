@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+
+#include "model/command/commands.h"
+#include "model/work/work.h"
+#include "sim/kernel/unit.h"
+
+namespace splatscope::sim {
+
+// A draw as the units take it: its work, and what is the same for all of it.
+struct DrawJob {
+  const Draw* draw = nullptr;
+  const DrawWork* work = nullptr;
+  std::size_t vertex_program = 0;       // which of the schedules of the vertex units
+  std::uint64_t pixel_clocks = 1;       // a quad, of the pixel unit
+  std::uint32_t vertex_address = 0;     // of base vertex 0, in the memory it lies in
+  std::uint32_t index_address = 0;      // of the first index
+  std::uint32_t texture_address = 0;
+  std::uint64_t triangles_set_up = 0;   // not rejected before setup
+  std::uint64_t colored_quads = 0;      // quads that go on to texture, pixel unit and blending
+};
+
+// Whether a quad goes on to texture, pixel unit and blending.
+inline bool is_colored(const DrawJob& job, const QuadWork& quad) {
+  return job.draw->state.color_write && quad.passed != 0;
+}
+
+// When the last unit has done its last item of a command. Finished at t is seen at t + 1.
+class Completion {
+ public:
+  void set_waiter(Unit& waiter) { waiter_ = &waiter; }
+  void start(Cycle now, std::uint32_t units) {
+    outstanding_ = units;
+    done_at_ = units == 0 ? now + 1 : kNever;
+  }
+  void finish(Cycle now) {
+    if (--outstanding_ == 0) {
+      done_at_ = now + 1;
+      waiter_->wake(done_at_);
+    }
+  }
+  Cycle done_at() const { return done_at_; }
+
+ private:
+  Unit* waiter_ = nullptr;
+  std::uint32_t outstanding_ = 0;
+  Cycle done_at_ = kNever;
+};
+
+// A unit that works on draws. The command processor, called last in a cycle, begins a draw; its items are counted down
+// to tell *idle* (nothing left of this draw) from *starved* (some are still to come).
+class DrawUnit : public Unit {
+ public:
+  DrawUnit(std::string name, Completion& completion) : Unit(std::move(name)), completion_(completion) {}
+
+  // The number of items that the unit has to do of this draw; they are seen from the next cycle on.
+  std::uint64_t begin(const DrawJob& job) {
+    job_ = &job;
+    remaining_ = start(job);
+    return remaining_;
+  }
+
+ protected:
+  virtual std::uint64_t start(const DrawJob& job) = 0;
+
+  const DrawJob& job() const { return *job_; }
+  bool has_work() const { return remaining_ != 0; }
+  void item_done(Cycle now) {
+    if (--remaining_ == 0) completion_.finish(now);
+  }
+  Step nothing_to_take(Cycle next) const { return has_work() ? starved(next) : idle(next); }
+  Completion& completion() { return completion_; }
+
+ private:
+  Completion& completion_;
+  const DrawJob* job_ = nullptr;
+  std::uint64_t remaining_ = 0;
+};
+
+}  // namespace splatscope::sim

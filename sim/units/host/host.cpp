@@ -1,0 +1,113 @@
+#include "sim/units/host/host.h"
+
+#include <cmath>
+
+namespace splatscope::sim {
+
+Host::Host(std::string name, const Machine::Host& spec, double cycles_per_nanosecond, const Trace& trace,
+           const Frame& frame)
+    : Unit(std::move(name)),
+      spec_(spec),
+      cycles_per_nanosecond_(cycles_per_nanosecond),
+      trace_(trace),
+      frame_(frame) {}
+
+void Host::connect(Channel<Order>& orders, Channel<std::uint32_t>& reports) {
+  orders_ = &orders;
+  reports_ = &reports;
+}
+
+Cycle Host::cycles_of(double nanoseconds) const {
+  return static_cast<Cycle>(std::ceil(nanoseconds * cycles_per_nanosecond_));
+}
+
+// After the last command, and before the host reads the frame, the caches are written back.
+Step Host::send(Cycle now) {
+  if (!orders_->can_push(now)) return blocked(orders_->consumer(), orders_->next_free());
+  Order order{OrderKind::flush, 0};
+  if (!at_end()) {
+    const Command& command = trace_.commands[command_];
+    if (std::holds_alternative<Draw>(command)) order = {OrderKind::draw, draws_++};
+    if (std::holds_alternative<Clear>(command)) order = {OrderKind::clear, 0};
+  }
+  orders_->push(now, order);
+  event(now, static_cast<std::uint64_t>(order.kind));
+  phase_ = Phase::waiting;
+  return busy(now + 1);
+}
+
+Step Host::report(Cycle now) {
+  if (!reports_->can_pop(now)) return idle(reports_->next_visible());
+  reports_->pop(now);
+  event(now, command_);
+  if (at_end()) {
+    if (!ends_.empty()) ends_.back() = now;
+    finished_ = true;
+    finished_at_ = now;
+    phase_ = Phase::done;
+    return idle();
+  }
+  if (std::holds_alternative<NormalizeOnHost>(trace_.commands[command_])) {
+    phase_ = Phase::normalizing;
+    pixels_left_ = frame_.pixels;
+    pixel_end_ = static_cast<double>(now);
+    ready_ = now;
+    return busy(now + 1);
+  }
+  next_command(now);
+  return busy(ready_);
+}
+
+void Host::next_command(Cycle now) {
+  ends_.push_back(now);
+  ++command_;
+  prepare(now);
+}
+
+void Host::prepare(Cycle now) {
+  phase_ = Phase::preparing;
+  ready_ = now + (at_end() ? 0 : cycles_of(spec_.command_nanoseconds));
+}
+
+Step Host::normalize(Cycle now) {
+  if (ready_ > now) return busy(ready_);
+  if (pixels_left_ == 0) {
+    next_command(now);
+    return busy(ready_);
+  }
+  --pixels_left_;
+  ++pixels_;
+  const int reads = (frame_.pixel_bytes + spec_.uncached_read_bytes - 1) / spec_.uncached_read_bytes;
+  const double nanoseconds = reads * spec_.uncached_read_nanoseconds + spec_.division_nanoseconds;
+  const int writes = (frame_.pixel_bytes + spec_.write_bytes_per_clock - 1) / spec_.write_bytes_per_clock;
+  pixel_end_ += nanoseconds * cycles_per_nanosecond_ + writes;
+  ready_ = static_cast<Cycle>(std::ceil(pixel_end_));
+  event(ready_, pixels_left_);
+  return busy(ready_);
+}
+
+Step Host::advance(Cycle now) {
+  switch (phase_) {
+    case Phase::preparing:
+      if (ready_ == kNever) prepare(now);
+      if (ready_ > now) return busy(ready_);
+      phase_ = Phase::sending;
+      [[fallthrough]];
+    case Phase::sending: return send(now);
+    case Phase::waiting: return report(now);
+    case Phase::normalizing: return normalize(now);
+    case Phase::done: return idle();
+  }
+  return idle();
+}
+
+std::vector<Statistic> Host::statistics() const {
+  return {{"commands", "commands", "of the trace, done", ends_.size()},
+          {"pixels_normalized", "pixels", "read back, divided and written", pixels_}};
+}
+
+std::string Host::state() const {
+  return "command " + std::to_string(command_) + " of " + std::to_string(trace_.commands.size());
+}
+
+}  // namespace splatscope::sim

@@ -1,0 +1,138 @@
+#include "sim/units/memory/memory_channel.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace splatscope::sim {
+namespace {
+
+std::uint32_t log2_of(int power) { return static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(power))); }
+
+}  // namespace
+
+MemoryChannel::MemoryChannel(std::string name, const Machine::Memory& spec)
+    : Unit(std::move(name)),
+      spec_(spec),
+      burst_clocks_(static_cast<Cycle>(spec.burst_bytes / spec.channel_bytes_per_clock)),
+      interleave_shift_(log2_of(spec.interleave_bytes)),
+      row_shift_(log2_of(spec.row_bytes)),
+      channel_shift_(log2_of(spec.channels)),
+      banks_(static_cast<std::size_t>(spec.banks)) {
+  queue_.reserve(static_cast<std::size_t>(spec.schedule_queue));
+}
+
+MemoryChannel::Entry MemoryChannel::entry_of(const MemoryRequest& request, std::size_t client) const {
+  // The channel's own address: without the bits that chose the channel.
+  const std::uint32_t above = request.address >> (interleave_shift_ + channel_shift_);
+  const std::uint32_t row = above >> (row_shift_ - interleave_shift_);
+  const auto banks = static_cast<std::uint32_t>(spec_.banks);
+  const auto burst = static_cast<std::uint32_t>(spec_.burst_bytes);
+  return {row / banks,
+          request.slot,
+          static_cast<std::uint16_t>((request.bytes + burst - 1) / burst),
+          static_cast<std::uint8_t>(row % banks),
+          static_cast<std::uint8_t>(client),
+          request.write};
+}
+
+// One request a cycle, the clients in turn.
+bool MemoryChannel::accept(Cycle now) {
+  if (queue_.size() >= static_cast<std::size_t>(spec_.schedule_queue)) return false;
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    const std::size_t client = turn_ + i < clients_.size() ? turn_ + i : turn_ + i - clients_.size();
+    auto& requests = *clients_[client].requests;
+    if (!requests.can_pop(now)) continue;
+    queue_.push_back(entry_of(requests.pop(now), client));
+    turn_ = client + 1 == clients_.size() ? 0 : client + 1;
+    return true;
+  }
+  return false;
+}
+
+// The oldest that hits an open row, unless the oldest of all has been overtaken often enough.
+std::size_t MemoryChannel::pick() {
+  if (bypassed_ < spec_.bypass_limit) {
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      if (banks_[queue_[i].bank].open_row == queue_[i].row) return i;
+    }
+  }
+  return 0;
+}
+
+// The cycle of the first data, with the bank's commands done on the way.
+Cycle MemoryChannel::first_data(Cycle now, const Entry& entry) {
+  Bank& bank = banks_[entry.bank];
+  if (bank.open_row == entry.row) {
+    ++row_hits_;
+  } else {
+    ++row_misses_;
+    Cycle activate = now;
+    if (bank.open_row != kNever) {
+      activate = std::max(now, bank.precharge_from) + static_cast<Cycle>(spec_.precharge_clocks);
+    }
+    bank.open_row = entry.row;
+    bank.access_from = activate + static_cast<Cycle>(spec_.activate_clocks);
+    bank.precharge_from = activate + static_cast<Cycle>(spec_.row_active_clocks);
+  }
+  const Cycle turnaround = entry.write == last_was_write_ ? 0 : static_cast<Cycle>(spec_.turnaround_clocks);
+  const Cycle from_bank = std::max(now, bank.access_from) + static_cast<Cycle>(spec_.cas_clocks);
+  return std::max(from_bank, bus_free_ + turnaround);
+}
+
+void MemoryChannel::issue(Cycle now, std::size_t index) {
+  const Entry entry = queue_[index];
+  queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(index));
+  bypassed_ = index == 0 ? 0 : bypassed_ + 1;
+
+  const Cycle first = first_data(now, entry);
+  const Cycle length = entry.bursts * burst_clocks_;
+  bus_free_ = first + length;
+  last_was_write_ = entry.write;
+  Bank& bank = banks_[entry.bank];
+  bank.access_from = first - static_cast<Cycle>(spec_.cas_clocks) + length;
+  const Cycle recovery = entry.write ? static_cast<Cycle>(spec_.write_recovery_clocks) : 0;
+  bank.precharge_from = std::max(bank.precharge_from, bus_free_ + recovery);
+  data_clocks_ += length;
+  // The next is picked while there is still time to open its row before the data bus is free.
+  const auto preparation = static_cast<Cycle>(spec_.precharge_clocks + spec_.activate_clocks + spec_.cas_clocks);
+  next_issue_ = std::max(now + 1, bus_free_ > preparation ? bus_free_ - preparation : 0);
+
+  event(now, (first << 16) ^ (std::uint64_t{entry.client} << 8) ^ entry.bank);
+  if (entry.write) {
+    ++writes_;
+    clients_[entry.client].port->written(bus_free_);
+  } else {
+    ++reads_;
+    clients_[entry.client].port->answer(entry.slot, bus_free_ + static_cast<Cycle>(spec_.return_latency));
+  }
+}
+
+Cycle MemoryChannel::next_accept() const {
+  if (queue_.size() >= static_cast<std::size_t>(spec_.schedule_queue)) return kNever;
+  Cycle next = kNever;
+  for (const Client& client : clients_) next = std::min(next, client.requests->next_visible());
+  return next;
+}
+
+Step MemoryChannel::advance(Cycle now) {
+  if (!queue_.empty() && next_issue_ <= now) issue(now, pick());
+  const bool accepted = accept(now);
+  const Cycle next = next_accept();
+  if (!queue_.empty()) return busy(std::max(std::min(next, next_issue_), now + 1));
+  if (bus_free_ > now) return busy(std::min(next, bus_free_));
+  return accepted ? busy(now + 1) : idle(next);
+}
+
+std::vector<Statistic> MemoryChannel::statistics() const {
+  return {{"reads", "requests", "reads served", reads_},
+          {"writes", "requests", "writes served", writes_},
+          {"row_hits", "requests", "that found their row open", row_hits_},
+          {"row_misses", "requests", "that had to open their row", row_misses_},
+          {"data_clocks", "clocks", "in which the data bus carried data", data_clocks_}};
+}
+
+std::string MemoryChannel::state() const {
+  return std::to_string(queue_.size()) + " requests queued, next issue at " + std::to_string(next_issue_);
+}
+
+}  // namespace splatscope::sim

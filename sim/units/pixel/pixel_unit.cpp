@@ -1,0 +1,34 @@
+#include "sim/units/pixel/pixel_unit.h"
+
+namespace splatscope::sim {
+
+PixelUnit::PixelUnit(std::string name, Completion& completion, int quads_per_clock)
+    : DrawUnit(std::move(name), completion), quads_per_clock_(quads_per_clock) {}
+
+void PixelUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out) {
+  in_ = &in;
+  out_ = &out;
+}
+
+std::uint64_t PixelUnit::start(const DrawJob& job) { return job.colored_quads; }
+
+Step PixelUnit::advance(Cycle now) {
+  if (free_from_ > now) return busy(free_from_);
+  if (!in_->can_pop(now)) return nothing_to_take(in_->next_visible());
+  if (!out_->can_push(now)) return blocked(out_->consumer(), out_->next_free());
+  for (int i = 0; i < quads_per_clock_ && in_->can_pop(now) && out_->can_push(now); ++i) {
+    const std::uint32_t quad = in_->pop(now);
+    out_->push(now, quad);
+    event(now, quad);
+    ++quads_;
+    item_done(now);
+  }
+  free_from_ = now + job().pixel_clocks;
+  return busy(free_from_);
+}
+
+std::vector<Statistic> PixelUnit::statistics() const {
+  return {{"quads", "quads", "that ran the pixel program", quads_}};
+}
+
+}  // namespace splatscope::sim

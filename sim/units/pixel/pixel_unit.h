@@ -1,0 +1,28 @@
+#pragma once
+
+#include "model/machine/machine.h"
+#include "sim/kernel/channel.h"
+#include "sim/units/draw_unit.h"
+
+namespace splatscope::sim {
+
+// Runs the pixel program: a fixed number of clocks a quad, in a pipeline as wide as the quads of a clock.
+class PixelUnit final : public DrawUnit {
+ public:
+  PixelUnit(std::string name, Completion& completion, int quads_per_clock);
+  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out);
+
+  Step advance(Cycle now) override;
+  std::vector<Statistic> statistics() const override;
+
+ private:
+  std::uint64_t start(const DrawJob& job) override;
+
+  int quads_per_clock_;
+  Channel<std::uint32_t>* in_ = nullptr;
+  Channel<std::uint32_t>* out_ = nullptr;
+  Cycle free_from_ = 0;
+  std::uint64_t quads_ = 0;
+};
+
+}  // namespace splatscope::sim

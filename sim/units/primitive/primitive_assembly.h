@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "model/machine/machine.h"
+#include "sim/kernel/channel.h"
+#include "sim/units/draw_unit.h"
+#include "sim/units/vertex/vertex_unit.h"
+
+namespace splatscope::sim {
+
+// Takes the shaded vertices in their order, makes triangles of them, drops those that need no setup (outside the
+// frustum, before the near plane, not finite), and clips.
+class PrimitiveAssembly final : public DrawUnit {
+ public:
+  PrimitiveAssembly(std::string name, Completion& completion, const Machine::Primitive& spec);
+  // `order`: which vertex unit has the next group. `out`: the numbers of the triangles to set up.
+  void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexGroup>*> units, Channel<std::uint32_t>& out);
+
+  Step advance(Cycle now) override;
+  std::vector<Statistic> statistics() const override;
+  std::string state() const override;
+
+  std::uint64_t triangles_done() const { return assembled_ + rejected_; }
+
+ private:
+  std::uint64_t start(const DrawJob& job) override;
+  bool take_group(Cycle now);
+  bool assemble(Cycle now);
+
+  Machine::Primitive spec_;
+  Channel<std::uint8_t>* order_ = nullptr;
+  std::vector<Channel<VertexGroup>*> units_;
+  Channel<std::uint32_t>* out_ = nullptr;
+  std::size_t triangle_ = 0;
+  std::uint32_t vertices_ = 0;  // taken and not used by a triangle yet
+  Cycle free_from_ = 0;
+  std::uint64_t assembled_ = 0, rejected_ = 0, clipped_ = 0;
+};
+
+}  // namespace splatscope::sim

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "model/machine/machine.h"
+#include "sim/kernel/channel.h"
+#include "sim/units/draw_unit.h"
+
+namespace splatscope::sim {
+
+// Sets up edges and gradients: a fixed number of clocks for each triangle, and for each piece of a clipped one.
+class TriangleSetup final : public DrawUnit {
+ public:
+  TriangleSetup(std::string name, Completion& completion, const Machine::Setup& spec);
+  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out);
+
+  Step advance(Cycle now) override;
+  std::vector<Statistic> statistics() const override;
+
+ private:
+  std::uint64_t start(const DrawJob& job) override;
+
+  Machine::Setup spec_;
+  Channel<std::uint32_t>* in_ = nullptr;
+  Channel<std::uint32_t>* out_ = nullptr;
+  Cycle free_from_ = 0;
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace splatscope::sim

@@ -1,0 +1,91 @@
+#include "sim/units/texture/texture_unit.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace splatscope::sim {
+namespace {
+
+constexpr unsigned kBlockBytes = 16;
+
+}  // namespace
+
+TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec, int quads_per_clock)
+    : DrawUnit(std::move(name), completion),
+      spec_(spec),
+      quads_per_clock_(quads_per_clock),
+      line_shift_(static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))),
+      cache_({spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes), spec.pending}) {}
+
+void TextureUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out, MemoryPort& port) {
+  in_ = &in;
+  out_ = &out;
+  port_ = &port;
+}
+
+std::uint64_t TextureUnit::start(const DrawJob& job) {
+  textured_ = job.draw->texture.has_value();
+  if (textured_) {
+    cache_.connect(*port_, job.texture_address);
+    cache_.invalidate();
+  }
+  next_block_ = 0;
+  blocks_done_ = 0;
+  return job.colored_quads;
+}
+
+bool TextureUnit::leave(Cycle now) {
+  if (cache_.empty() || !cache_.is_ready(now) || !out_->can_push(now)) return false;
+  const std::uint32_t quad = cache_.leave();
+  out_->push(now, quad);
+  event(now, quad);
+  ++quads_;
+  item_done(now);
+  return true;
+}
+
+bool TextureUnit::look_up(Cycle now, int& lookups) {
+  if (!cache_.has_room() || !in_->can_pop(now)) return false;
+  const DrawWork& work = *job().work;
+  const std::uint32_t blocks = textured_ ? work.quads[in_->front()].texel_block_count : 0;
+  for (; blocks_done_ < blocks; ++blocks_done_, --lookups) {
+    if (lookups == 0) return true;  // the rest of this quad in the next clock
+    in_the_way_ = cache_.touch(now, work.texel_blocks[next_block_ + blocks_done_] >> line_shift_, true, false);
+    if (in_the_way_) return false;
+  }
+  next_block_ += blocks;
+  blocks_done_ = 0;
+  cache_.enter(in_->pop(now));
+  return true;
+}
+
+Step TextureUnit::advance(Cycle now) {
+  in_the_way_ = nullptr;
+  bool moved = false;
+  for (int i = 0; i < quads_per_clock_ && leave(now); ++i) moved = true;
+  int lookups = spec_.lookups_per_clock;
+  for (int i = 0; i < quads_per_clock_ && look_up(now, lookups); ++i) moved = true;
+  if (moved || lookups != spec_.lookups_per_clock) return busy(now + 1);
+
+  Cycle next = kNever;
+  if (in_the_way_) {
+    next = cache_.next_try();
+  } else if (cache_.has_room()) {
+    next = in_->next_visible();
+  }
+  if (cache_.empty()) return in_the_way_ ? blocked(*in_the_way_, next) : nothing_to_take(next);
+  if (cache_.is_ready(now)) return blocked(out_->consumer(), std::min(next, out_->next_free()));
+  return blocked(cache_.server(), std::min(next, cache_.next_ready()));
+}
+
+std::vector<Statistic> TextureUnit::statistics() const {
+  return {{"quads", "quads", "passed on", quads_},
+          {"lookups", "lines", "looked up in the texture cache", cache_.touches()},
+          {"misses", "lines", "read from memory", cache_.misses()}};
+}
+
+std::string TextureUnit::state() const {
+  return cache_.empty() ? "" : "oldest quad " + std::to_string(cache_.oldest());
+}
+
+}  // namespace splatscope::sim
