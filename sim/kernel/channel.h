@@ -15,11 +15,11 @@ class ChannelState {
   virtual std::string describe() const = 0;
 };
 
-// A bounded queue from one unit to another. Its slots carry a cycle: *visible at* while full, *free at* while empty.
-// A push at t is seen at t + latency (at least 1), a pop at t frees its slot at t + 1; so what a unit sees in a cycle
-// does not depend on which units were called before it in that cycle.
-// Where the two units are of different domains, a push is seen at the consumer's first edge after t, plus latency - 1
-// of its cycles, and a slot is free at the producer's first edge after the pop.
+// A bounded queue from one unit to another. Its slots carry a cycle: *visible at* while full, *free at* while
+// empty. A push at t is seen at t + latency (at least 1), a pop at t frees its slot at t + 1; so what a unit
+// sees in a cycle does not depend on which units were called before it in that cycle. Where the two units are
+// of different domains, a push is seen at the consumer's first edge after t, plus latency - 1 of its cycles,
+// and a slot is free at the producer's first edge after the pop.
 template <class T>
 class Channel final : public ChannelState {
  public:
@@ -66,8 +66,8 @@ class Channel final : public ChannelState {
   }
 
   std::string describe() const override {
-    return name_ + " (" + producer_.name() + " to " + consumer_.name() + "): " + std::to_string(tail_ - head_) +
-           " of " + std::to_string(capacity_);
+    return name_ + " (" + producer_.name() + " to " + consumer_.name() +
+           "): " + std::to_string(tail_ - head_) + " of " + std::to_string(capacity_);
   }
 
  private:

@@ -24,9 +24,9 @@ void ClockDomain::add(Unit& unit, std::uint32_t number) {
 
 Cycle ClockDomain::next_visited() const {
   if (scheduler_ == Scheduler::skip_ahead) return next();
-  const bool pending = next() != kNever || std::any_of(peers_.begin(), peers_.end(), [](const ClockDomain* peer) {
-                         return peer->next() != kNever;
-                       });
+  const bool pending =
+      next() != kNever || std::any_of(peers_.begin(), peers_.end(),
+                                      [](const ClockDomain* peer) { return peer->next() != kNever; });
   return pending ? now_ + 1 : kNever;
 }
 
@@ -35,7 +35,9 @@ void ClockDomain::run(Cycle last) {
   for (Cycle at = next_visited(); at <= limit_ && at != kNever; at = next_visited()) visit(at);
 }
 
-void ClockDomain::lower_limit(Femtoseconds time) { limit_ = std::min(limit_, time / period_); }
+void ClockDomain::lower_limit(Femtoseconds time) {
+  limit_ = std::min(limit_, time / period_);
+}
 
 void ClockDomain::visit(Cycle now) {
   std::uint64_t due = wheel_[now % kWheel];

@@ -32,9 +32,10 @@ struct Books {
   }
 };
 
-// The units of one clock, called in the order in which they were added. Plain C++: run() needs no SystemC kernel.
-// A unit sleeps until the cycle that its advance() returned or until a channel wakes it; a cycle in which no unit can
-// act is not visited. Wakes of the next 64 cycles stand on a wheel (one bit a unit), later ones in a list.
+// The units of one clock, called in the order in which they were added. Plain C++: run() needs no SystemC
+// kernel. A unit sleeps until the cycle that its advance() returned or until a channel wakes it; a cycle in
+// which no unit can act is not visited. Wakes of the next 64 cycles stand on a wheel (one bit a unit), later
+// ones in a list.
 class ClockDomain {
  public:
   // Books count cycles of a clock of period `reference`, so that the books of all domains add up to the same.
@@ -43,8 +44,8 @@ class ClockDomain {
   // First called in cycle 0. `number` is its number in the whole machine. At most 64 units.
   void add(Unit& unit, std::uint32_t number);
 
-  // Runs every cycle up to and including `last`, or until nothing is left to do; a push across the boundary to
-  // another domain may lower `last` on the way.
+  // Runs every cycle up to and including `last`, or until nothing is left to do; a push across the boundary
+  // to another domain may lower `last` on the way.
   void run(Cycle last);
   void lower_limit(Femtoseconds time);  // run() stops after the last cycle at or before `time`
 
@@ -62,9 +63,12 @@ class ClockDomain {
   Cycle next() const {
     if (occupied_ == 0) return earliest_later_;
     const Cycle first = now_ + 1;
-    return first + static_cast<Cycle>(std::countr_zero(std::rotr(occupied_, static_cast<int>(first % kWheel))));
+    const auto ahead =
+        static_cast<Cycle>(std::countr_zero(std::rotr(occupied_, static_cast<int>(first % kWheel))));
+    return first + ahead < earliest_later_ ? first + ahead : earliest_later_;
   }
-  // The next cycle that run() visits: with the referee every one while any domain of the run has something to do.
+  // The next cycle that run() visits: with the referee every one while any domain of the run has something to
+  // do.
   Cycle next_visited() const;
   Femtoseconds next_time() const { return next_visited() == kNever ? kNever : time(next_visited()); }
 

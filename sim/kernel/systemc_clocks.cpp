@@ -10,12 +10,16 @@
 #include "model/error.h"
 
 // The library's own main() would call it; splatscope's programs have their own, so it is never reached.
-int sc_main(int, char*[]) { return 1; }
+int sc_main(int, char*[]) {
+  return 1;
+}
 
 namespace splatscope::sim {
 namespace {
 
-sc_core::sc_time femtoseconds(Femtoseconds time) { return sc_core::sc_time::from_value(time); }
+sc_core::sc_time femtoseconds(Femtoseconds time) {
+  return sc_core::sc_time::from_value(time);
+}
 
 class Run;
 
@@ -109,7 +113,9 @@ void DomainProcess::notify(Femtoseconds start) {
   due_.notify(femtoseconds(at > now ? at - now : 0));
 }
 
-void DomainProcess::step() { run_->step(*domain_); }
+void DomainProcess::step() {
+  run_->step(*domain_);
+}
 
 }  // namespace
 

@@ -18,18 +18,19 @@ struct Statistic {
   std::uint64_t value = 0;
 };
 
-// What a unit did in a cycle, or why it did nothing, and until when that stays so unless a channel wakes it earlier.
-// Units return one of the four below from advance().
+// What a unit did in a cycle, or why it did nothing, and until when that stays so unless a channel wakes it
+// earlier. Units return one of the four below from advance().
 struct Step {
-  Cycle next;          // to be called again no later than here (at or before now: next cycle; kNever: when woken)
+  Cycle next;  // to be called again no later than here (at or before now: next cycle; kNever: when woken)
   std::uint32_t book;  // kBusy, kStarved, kIdle, or kBlocked + number of the unit that is in the way
 
   static constexpr std::uint32_t kBusy = 0, kStarved = 1, kIdle = 2, kBlocked = 3;
 };
 
-// A hardware unit. Plain C++: what it does in a cycle depends on what was visible at its start, so the order in which
-// the units of a domain are called never changes a result. advance() may be called in cycles where nothing can be done
-// (the referee calls it in every cycle): then it changes nothing and books the same as the last call.
+// A hardware unit. Plain C++: what it does in a cycle depends on what was visible at its start, so the order
+// in which the units of a domain are called never changes a result. advance() may be called in cycles where
+// nothing can be done (the referee calls it in every cycle): then it changes nothing and books the same as
+// the last call.
 class Unit {
  public:
   explicit Unit(std::string name) : name_(std::move(name)) {}

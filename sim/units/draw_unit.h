@@ -12,13 +12,13 @@ namespace splatscope::sim {
 struct DrawJob {
   const Draw* draw = nullptr;
   const DrawWork* work = nullptr;
-  std::size_t vertex_program = 0;       // which of the schedules of the vertex units
-  std::uint64_t pixel_clocks = 1;       // a quad, of the pixel unit
-  std::uint32_t vertex_address = 0;     // of base vertex 0, in the memory it lies in
-  std::uint32_t index_address = 0;      // of the first index
+  std::size_t vertex_program = 0;    // which of the schedules of the vertex units
+  std::uint64_t pixel_clocks = 1;    // a quad, of the pixel unit
+  std::uint32_t vertex_address = 0;  // of base vertex 0, in the memory it lies in
+  std::uint32_t index_address = 0;   // of the first index
   std::uint32_t texture_address = 0;
-  std::uint64_t triangles_set_up = 0;   // not rejected before setup
-  std::uint64_t colored_quads = 0;      // quads that go on to texture, pixel unit and blending
+  std::uint64_t triangles_set_up = 0;  // not rejected before setup
+  std::uint64_t colored_quads = 0;     // quads that go on to texture, pixel unit and blending
 };
 
 // Whether a quad goes on to texture, pixel unit and blending.
@@ -48,8 +48,8 @@ class Completion {
   Cycle done_at_ = kNever;
 };
 
-// A unit that works on draws. The command processor, called last in a cycle, begins a draw; its items are counted down
-// to tell *idle* (nothing left of this draw) from *starved* (some are still to come).
+// A unit that works on draws. The command processor, called last in a cycle, begins a draw; its items are
+// counted down to tell *idle* (nothing left of this draw) from *starved* (some are still to come).
 class DrawUnit : public Unit {
  public:
   DrawUnit(std::string name, Completion& completion) : Unit(std::move(name)), completion_(completion) {}

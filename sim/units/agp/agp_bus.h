@@ -8,8 +8,8 @@
 
 namespace splatscope::sim {
 
-// The AGP bus reading host memory for the graphics core: one request after the other on the data lines, latencies
-// overlapping. On the bus clock.
+// The AGP bus reading host memory for the graphics core: one request after the other on the data lines,
+// latencies overlapping. On the bus clock.
 class AgpBus final : public Unit {
  public:
   AgpBus(std::string name, const Machine::Agp& spec, double cycles_per_nanosecond);

@@ -4,8 +4,8 @@
 
 namespace splatscope::sim {
 
-BlendUnit::BlendUnit(std::string name, Completion& completion, const Machine::Blend& spec, const FrameLines& lines,
-                     int quads_per_clock)
+BlendUnit::BlendUnit(std::string name, Completion& completion, const Machine::Blend& spec,
+                     const FrameLines& lines, int quads_per_clock)
     : DrawUnit(std::move(name), completion),
       lines_(lines),
       quads_per_clock_(quads_per_clock),
@@ -16,7 +16,9 @@ void BlendUnit::connect(Channel<std::uint32_t>& in, MemoryPort& port, std::uint3
   cache_.connect(port, address);
 }
 
-std::uint64_t BlendUnit::start(const DrawJob& job) { return job.colored_quads; }
+std::uint64_t BlendUnit::start(const DrawJob& job) {
+  return job.colored_quads;
+}
 
 bool BlendUnit::leave(Cycle now) {
   if (cache_.empty() || !cache_.is_ready(now)) return false;

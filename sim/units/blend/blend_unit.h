@@ -7,7 +7,8 @@
 
 namespace splatscope::sim {
 
-// Blends quads into the frame buffer through a write-back cache. Draws that do not blend write without reading.
+// Blends quads into the frame buffer through a write-back cache. Draws that do not blend write without
+// reading.
 class BlendUnit final : public DrawUnit {
  public:
   BlendUnit(std::string name, Completion& completion, const Machine::Blend& spec, const FrameLines& lines,

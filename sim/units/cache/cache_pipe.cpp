@@ -117,6 +117,8 @@ bool CachePipe::flush(Cycle now) {
   return false;
 }
 
-void CachePipe::invalidate() { std::fill(tags_.begin(), tags_.end(), Way{}); }
+void CachePipe::invalidate() {
+  std::fill(tags_.begin(), tags_.end(), Way{});
+}
 
 }  // namespace splatscope::sim

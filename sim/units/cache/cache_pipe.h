@@ -6,10 +6,11 @@
 
 namespace splatscope::sim {
 
-// A pipelined cache (Igehy, Eldridge and Proudfoot 1998): tags are checked when an item enters and its misses are asked
-// for at once; items then wait in a FIFO and leave in order when their lines are there, so that memory latency costs
-// slots of the FIFO and no time. An item that hits a line which an earlier one asked for leaves after it and so needs
-// no further wait. Lines are replaced, and dirty ones written back, when the tag is taken.
+// A pipelined cache (Igehy, Eldridge and Proudfoot 1998): tags are checked when an item enters and its misses
+// are asked for at once; items then wait in a FIFO and leave in order when their lines are there, so that
+// memory latency costs slots of the FIFO and no time. An item that hits a line which an earlier one asked for
+// leaves after it and so needs no further wait. Lines are replaced, and dirty ones written back, when the tag
+// is taken.
 class CachePipe {
  public:
   struct Spec {
@@ -20,14 +21,15 @@ class CachePipe {
   };
   explicit CachePipe(const Spec& spec);
 
-  // The port to take lines from, and the address of line 0. The cache keeps what it holds; invalidate() empties it.
+  // The port to take lines from, and the address of line 0. The cache keeps what it holds; invalidate()
+  // empties it.
   void connect(MemoryPort& port, std::uint32_t address);
 
   bool has_room() const { return tail_ - head_ < items_; }
 
-  // Touches a line for the item that enters next. nullptr: done; else the unit in the way, and the client tries the
-  // same line again (what has gone out by then is remembered).
-  // `fetch`: a miss reads the line from memory. `dirty`: the item writes to it.
+  // Touches a line for the item that enters next. nullptr: done; else the unit in the way, and the client
+  // tries the same line again (what has gone out by then is remembered). `fetch`: a miss reads the line from
+  // memory. `dirty`: the item writes to it.
   const Unit* touch(Cycle now, std::uint32_t line, bool fetch, bool dirty);
   // When touch() is worth another try after it failed; kNever: a memory channel will wake the client.
   Cycle next_try() const { return next_try_; }
@@ -38,8 +40,8 @@ class CachePipe {
   std::uint32_t oldest() const { return fifo_[head_ & (fifo_.size() - 1)].item; }
   // Whether its lines are there. Takes note of those that came.
   bool is_ready(Cycle now);
-  // After is_ready() said no: who serves the line that it waits for, and when that comes (kNever: not known yet, the
-  // memory wakes the client).
+  // After is_ready() said no: who serves the line that it waits for, and when that comes (kNever: not known
+  // yet, the memory wakes the client).
   const Unit& server() const { return port_->oldest_server(); }
   Cycle next_ready();
   std::uint32_t leave() { return fifo_[head_++ & (fifo_.size() - 1)].item; }
@@ -67,8 +69,8 @@ class CachePipe {
 
   Way* find(std::uint32_t line);
   Way& victim(std::uint32_t line);
-  // Asks memory to move `line`, part by part where it spans memory channels. nullptr: all asked for; else the unit in
-  // the way, and the next call goes on from there.
+  // Asks memory to move `line`, part by part where it spans memory channels. nullptr: all asked for; else the
+  // unit in the way, and the next call goes on from there.
   const Unit* move(Cycle now, std::uint32_t line, bool write);
 
   std::uint32_t items_;

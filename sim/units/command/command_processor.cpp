@@ -20,7 +20,7 @@ void CommandProcessor::set_draws(const std::vector<DrawJob>& jobs, std::vector<D
   units_ = std::move(units);
 }
 
-void CommandProcessor::set_frame(DepthTest* depth, bool fast_depth_clear, BlendUnit* blend,
+void CommandProcessor::set_frame(DepthUnit* depth, bool fast_depth_clear, BlendUnit* blend,
                                  std::vector<Surface> cleared) {
   depth_ = depth;
   fast_depth_clear_ = fast_depth_clear;
@@ -32,9 +32,12 @@ void CommandProcessor::begin(Cycle now, const Order& order) {
   event(now, static_cast<std::uint64_t>(order.kind));
   phase_ = order.kind == OrderKind::clear ? Phase::filling : Phase::working;
   switch (order.kind) {
-    case OrderKind::draw: return begin_draw(now, (*jobs_)[order.job]);
-    case OrderKind::flush: return begin_flush(now);
-    case OrderKind::clear: return begin_clear();
+    case OrderKind::draw:
+      return begin_draw(now, (*jobs_)[order.job]);
+    case OrderKind::flush:
+      return begin_flush(now);
+    case OrderKind::clear:
+      return begin_clear();
   }
 }
 
@@ -121,7 +124,8 @@ std::vector<Statistic> CommandProcessor::statistics() const {
 }
 
 std::string CommandProcessor::state() const {
-  static constexpr const char* kNames[] = {"waiting for the host", "waiting for the pipeline", "clearing", "reporting"};
+  static constexpr const char* kNames[] = {"waiting for the host", "waiting for the pipeline", "clearing",
+                                           "reporting"};
   return kNames[static_cast<std::size_t>(phase_)];
 }
 

@@ -4,7 +4,7 @@
 
 #include "sim/kernel/channel.h"
 #include "sim/units/blend/blend_unit.h"
-#include "sim/units/depth/depth_test.h"
+#include "sim/units/depth/depth_unit.h"
 #include "sim/units/draw_unit.h"
 
 namespace splatscope::sim {
@@ -17,8 +17,8 @@ struct Order {
   std::uint32_t job = 0;  // of a draw, which
 };
 
-// Takes orders from the host one at a time and reports each one when the pipeline has drained. Called after all other
-// units of its domain, so that what it begins is seen by them from the next cycle on.
+// Takes orders from the host one at a time and reports each one when the pipeline has drained. Called after
+// all other units of its domain, so that what it begins is seen by them from the next cycle on.
 class CommandProcessor final : public Unit {
  public:
   // The surfaces that a clear writes; 0 bytes: nothing to write (marked, or not there).
@@ -31,7 +31,7 @@ class CommandProcessor final : public Unit {
   void connect(Channel<Order>& from_host, Channel<std::uint32_t>& to_host, MemoryPort& port);
   void set_draws(const std::vector<DrawJob>& jobs, std::vector<DrawUnit*> units);
   // Null where the machine of this trace has none.
-  void set_frame(DepthTest* depth, bool fast_depth_clear, BlendUnit* blend, std::vector<Surface> cleared);
+  void set_frame(DepthUnit* depth, bool fast_depth_clear, BlendUnit* blend, std::vector<Surface> cleared);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
@@ -52,14 +52,14 @@ class CommandProcessor final : public Unit {
   MemoryPort* port_ = nullptr;
   const std::vector<DrawJob>* jobs_ = nullptr;
   std::vector<DrawUnit*> units_;
-  DepthTest* depth_ = nullptr;
+  DepthUnit* depth_ = nullptr;
   bool fast_depth_clear_ = false;
   BlendUnit* blend_ = nullptr;
   std::vector<Surface> cleared_;
 
   Phase phase_ = Phase::waiting;
-  std::size_t surface_ = 0;     // of the fill
-  std::uint32_t filled_ = 0;    // bytes of it
+  std::size_t surface_ = 0;   // of the fill
+  std::uint32_t filled_ = 0;  // bytes of it
   std::uint32_t orders_ = 0;
   std::uint64_t bytes_filled_ = 0;
 };

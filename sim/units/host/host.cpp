@@ -93,10 +93,14 @@ Step Host::advance(Cycle now) {
       if (ready_ > now) return busy(ready_);
       phase_ = Phase::sending;
       [[fallthrough]];
-    case Phase::sending: return send(now);
-    case Phase::waiting: return report(now);
-    case Phase::normalizing: return normalize(now);
-    case Phase::done: return idle();
+    case Phase::sending:
+      return send(now);
+    case Phase::waiting:
+      return report(now);
+    case Phase::normalizing:
+      return normalize(now);
+    case Phase::done:
+      return idle();
   }
   return idle();
 }

@@ -10,9 +10,10 @@
 
 namespace splatscope::sim {
 
-// The host: sends the commands of a trace one after the other, and normalises the frame itself: it reads each pixel
-// over the bus with uncached reads and waits for every one, divides, and writes the pixel back (posted: the host waits
-// only for the bus to take it). On the bus clock. Clears, draws and normalisations do not overlap.
+// The host: sends the commands of a trace one after the other, and normalises the frame itself: it reads each
+// pixel over the bus with uncached reads and waits for every one, divides, and writes the pixel back (posted:
+// the host waits only for the bus to take it). On the bus clock. Clears, draws and normalisations do not
+// overlap.
 class Host final : public Unit {
  public:
   // `pixels`: of the frame; `pixel_bytes`: of one. `nanosecond_cycles`: bus cycles a nanosecond.

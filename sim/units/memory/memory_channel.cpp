@@ -6,7 +6,9 @@
 namespace splatscope::sim {
 namespace {
 
-std::uint32_t log2_of(int power) { return static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(power))); }
+std::uint32_t log2_of(int power) {
+  return static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(power)));
+}
 
 }  // namespace
 
@@ -94,7 +96,8 @@ void MemoryChannel::issue(Cycle now, std::size_t index) {
   bank.precharge_from = std::max(bank.precharge_from, bus_free_ + recovery);
   data_clocks_ += length;
   // The next is picked while there is still time to open its row before the data bus is free.
-  const auto preparation = static_cast<Cycle>(spec_.precharge_clocks + spec_.activate_clocks + spec_.cas_clocks);
+  const auto preparation =
+      static_cast<Cycle>(spec_.precharge_clocks + spec_.activate_clocks + spec_.cas_clocks);
   next_issue_ = std::max(now + 1, bus_free_ > preparation ? bus_free_ - preparation : 0);
 
   event(now, (first << 16) ^ (std::uint64_t{entry.client} << 8) ^ entry.bank);

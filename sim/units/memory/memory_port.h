@@ -15,9 +15,9 @@ struct MemoryRequest {
   bool write = false;
 };
 
-// A unit's way to memory: a request channel to each memory channel, and return slots that carry the cycle at which
-// their data is there. Reads are numbered; number n has slot n % slots until it is released, and reads are released in
-// order. What a read is for is the client's business.
+// A unit's way to memory: a request channel to each memory channel, and return slots that carry the cycle at
+// which their data is there. Reads are numbered; number n has slot n % slots until it is released, and reads
+// are released in order. What a read is for is the client's business.
 class MemoryPort {
  public:
   // `slots`: reads in flight at most (rounded up to a power of two).
@@ -50,14 +50,15 @@ class MemoryPort {
     channel_of(address).push(now, {address, 0, static_cast<std::uint16_t>(bytes), true});
   }
 
-  // The oldest read not released: when its data is there (kNever: not known yet; then await() has the client woken).
+  // The oldest read not released: when its data is there (kNever: not known yet; then await() has the client
+  // woken).
   Cycle oldest_ready() const { return returns_[oldest_ & mask_].ready; }
   const Unit& oldest_server() const { return *returns_[oldest_ & mask_].server; }
   void await_oldest() { awaited_ = oldest_ & mask_; }
   void release_oldest() { ++oldest_; }
 
-  // When the last write has reached memory; kNever: some are on their way (after await_writes() the last wakes the
-  // client).
+  // When the last write has reached memory; kNever: some are on their way (after await_writes() the last
+  // wakes the client).
   Cycle writes_done() const { return writes_in_flight_ == 0 ? last_write_ : kNever; }
   void await_writes() { writes_awaited_ = true; }
 

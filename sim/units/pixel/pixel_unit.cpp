@@ -10,7 +10,9 @@ void PixelUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out)
   out_ = &out;
 }
 
-std::uint64_t PixelUnit::start(const DrawJob& job) { return job.colored_quads; }
+std::uint64_t PixelUnit::start(const DrawJob& job) {
+  return job.colored_quads;
+}
 
 Step PixelUnit::advance(Cycle now) {
   if (free_from_ > now) return busy(free_from_);

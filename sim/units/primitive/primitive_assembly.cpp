@@ -42,7 +42,8 @@ bool PrimitiveAssembly::assemble(Cycle now) {
   ++(drawn ? assembled_ : rejected_);
   const Cycle further = drawn ? triangle.pieces - 1u : 0u;
   clipped_ += further != 0;
-  free_from_ = now + static_cast<Cycle>(spec_.clocks_per_triangle) + further * static_cast<Cycle>(spec_.clip_clocks);
+  free_from_ =
+      now + static_cast<Cycle>(spec_.clocks_per_triangle) + further * static_cast<Cycle>(spec_.clip_clocks);
   vertices_ -= triangle.new_vertices;
   event(now, triangle_);
   ++triangle_;

@@ -9,13 +9,14 @@
 
 namespace splatscope::sim {
 
-// Takes the shaded vertices in their order, makes triangles of them, drops those that need no setup (outside the
-// frustum, before the near plane, not finite), and clips.
+// Takes the shaded vertices in their order, makes triangles of them, drops those that need no setup (outside
+// the frustum, before the near plane, not finite), and clips.
 class PrimitiveAssembly final : public DrawUnit {
  public:
   PrimitiveAssembly(std::string name, Completion& completion, const Machine::Primitive& spec);
   // `order`: which vertex unit has the next group. `out`: the numbers of the triangles to set up.
-  void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexGroup>*> units, Channel<std::uint32_t>& out);
+  void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexGroup>*> units,
+               Channel<std::uint32_t>& out);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;

@@ -4,7 +4,8 @@
 
 namespace splatscope::sim {
 
-Rasteriser::Rasteriser(std::string name, Completion& completion, const Machine::Raster& spec, int quads_per_clock)
+Rasteriser::Rasteriser(std::string name, Completion& completion, const Machine::Raster& spec,
+                       int quads_per_clock)
     : DrawUnit(std::move(name), completion), spec_(spec), quads_per_clock_(quads_per_clock) {}
 
 void Rasteriser::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, bool all_quads) {
@@ -63,7 +64,8 @@ std::vector<Statistic> Rasteriser::statistics() const {
 }
 
 std::string Rasteriser::state() const {
-  return walking_ ? "triangle " + std::to_string(triangle_) + ", quads left " + std::to_string(quads_left_) : "";
+  return walking_ ? "triangle " + std::to_string(triangle_) + ", quads left " + std::to_string(quads_left_)
+                  : "";
 }
 
 }  // namespace splatscope::sim

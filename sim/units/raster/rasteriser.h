@@ -6,8 +6,8 @@
 
 namespace splatscope::sim {
 
-// Walks the 8x8-pixel tiles of a triangle and sends out the 2x2 quads with coverage. The tile walk runs beside the
-// quads: a triangle takes as long as the longer of the two, at least a clock.
+// Walks the 8x8-pixel tiles of a triangle and sends out the 2x2 quads with coverage. The tile walk runs
+// beside the quads: a triangle takes as long as the longer of the two, at least a clock.
 class Rasteriser final : public DrawUnit {
  public:
   Rasteriser(std::string name, Completion& completion, const Machine::Raster& spec, int quads_per_clock);
@@ -30,7 +30,7 @@ class Rasteriser final : public DrawUnit {
   bool all_quads_ = true;
   bool walking_ = false;
   std::uint32_t triangle_ = 0;
-  std::uint32_t next_quad_ = 0;  // of the draw
+  std::uint32_t next_quad_ = 0;                    // of the draw
   std::uint32_t quads_left_ = 0, tiles_left_ = 0;  // of the triangle
   std::uint64_t quads_ = 0, tiles_ = 0, empty_ = 0;
 };

@@ -10,7 +10,9 @@ void TriangleSetup::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& 
   out_ = &out;
 }
 
-std::uint64_t TriangleSetup::start(const DrawJob& job) { return job.triangles_set_up; }
+std::uint64_t TriangleSetup::start(const DrawJob& job) {
+  return job.triangles_set_up;
+}
 
 Step TriangleSetup::advance(Cycle now) {
   if (free_from_ > now) return busy(free_from_);

@@ -6,7 +6,8 @@
 
 namespace splatscope::sim {
 
-// Sets up edges and gradients: a fixed number of clocks for each triangle, and for each piece of a clipped one.
+// Sets up edges and gradients: a fixed number of clocks for each triangle, and for each piece of a clipped
+// one.
 class TriangleSetup final : public DrawUnit {
  public:
   TriangleSetup(std::string name, Completion& completion, const Machine::Setup& spec);

@@ -10,12 +10,15 @@ constexpr unsigned kBlockBytes = 16;
 
 }  // namespace
 
-TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec, int quads_per_clock)
+TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec,
+                         int quads_per_clock)
     : DrawUnit(std::move(name), completion),
       spec_(spec),
       quads_per_clock_(quads_per_clock),
-      line_shift_(static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))),
-      cache_({spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes), spec.pending}) {}
+      line_shift_(
+          static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))),
+      cache_({spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes), spec.pending}) {
+}
 
 void TextureUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out, MemoryPort& port) {
   in_ = &in;
@@ -50,7 +53,8 @@ bool TextureUnit::look_up(Cycle now, int& lookups) {
   const std::uint32_t blocks = textured_ ? work.quads[in_->front()].texel_block_count : 0;
   for (; blocks_done_ < blocks; ++blocks_done_, --lookups) {
     if (lookups == 0) return true;  // the rest of this quad in the next clock
-    in_the_way_ = cache_.touch(now, work.texel_blocks[next_block_ + blocks_done_] >> line_shift_, true, false);
+    in_the_way_ =
+        cache_.touch(now, work.texel_blocks[next_block_ + blocks_done_] >> line_shift_, true, false);
     if (in_the_way_) return false;
   }
   next_block_ += blocks;

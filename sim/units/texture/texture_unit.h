@@ -6,8 +6,8 @@
 
 namespace splatscope::sim {
 
-// Looks the texel blocks of quads up in the texture cache; quads wait for their misses in a FIFO that hides the latency
-// of memory. Nearest sampling: one texel a pixel. Quads of draws without a texture pass through.
+// Looks the texel blocks of quads up in the texture cache; quads wait for their misses in a FIFO that hides
+// the latency of memory. Nearest sampling: one texel a pixel. Quads of draws without a texture pass through.
 class TextureUnit final : public DrawUnit {
  public:
   TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec, int quads_per_clock);
@@ -30,7 +30,7 @@ class TextureUnit final : public DrawUnit {
   MemoryPort* port_ = nullptr;
   CachePipe cache_;
   bool textured_ = false;
-  std::size_t next_block_ = 0;    // of the draw
+  std::size_t next_block_ = 0;     // of the draw
   std::uint32_t blocks_done_ = 0;  // of the quad that is being looked up
   const Unit* in_the_way_ = nullptr;
   std::uint64_t quads_ = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "model/isa/opcode.h"
+
 namespace splatscope::sim {
 namespace {
 
@@ -26,78 +28,60 @@ bool is_scalar(Opcode opcode) {
   }
 }
 
-// Rows of a matrix macro and the dot product of each; 0 rows: not one.
-struct MatrixMacro {
-  int rows = 0;
-  Opcode dot = Opcode::nop;
-};
-
-MatrixMacro matrix_macro(Opcode opcode) {
-  switch (opcode) {
-    case Opcode::m4x4: return {4, Opcode::dp4};
-    case Opcode::m4x3: return {3, Opcode::dp4};
-    case Opcode::m3x4: return {4, Opcode::dp3};
-    case Opcode::m3x3: return {3, Opcode::dp3};
-    case Opcode::m3x2: return {2, Opcode::dp3};
-    default: return {};
+// The rows of a matrix macro: a dot product each.
+std::vector<Instruction> matrix_rows(const Instruction& instruction, const isa::MatrixShape& shape) {
+  std::vector<Instruction> rows;
+  for (int row = 0; row < shape.rows; ++row) {
+    Instruction dot = instruction;
+    dot.opcode = shape.columns == 4 ? Opcode::dp4 : Opcode::dp3;
+    dot.destination.mask = static_cast<std::uint8_t>(1u << row);
+    dot.sources[1].index = static_cast<std::uint8_t>(instruction.sources[1].index + row);
+    rows.push_back(dot);
   }
+  return rows;
 }
 
-// exp, log and frc stand for chains of instructions, each one on the result of the one before: the chip's own code for
-// them is not known, its length is Direct3D's.
-struct ChainMacro {
-  int slots = 0;
-  Opcode first = Opcode::nop;
-};
-
-ChainMacro chain_macro(Opcode opcode) {
-  switch (opcode) {
-    case Opcode::exp: return {10, Opcode::expp};
-    case Opcode::log: return {10, Opcode::logp};
-    case Opcode::frc: return {3, Opcode::expp};
-    default: return {};
-  }
+// exp, log and frc: a scalar instruction and a chain behind it, each on the result of the one before. What
+// the chip runs for them is not known; the length is Direct3D's.
+std::vector<Instruction> chain(const Instruction& instruction, int slots) {
+  Instruction link = instruction;
+  link.opcode = instruction.opcode == Opcode::log ? Opcode::logp : Opcode::expp;
+  std::vector<Instruction> links{link};
+  link.opcode = Opcode::mul;
+  link.source_count = 1;
+  link.sources[0] = {};
+  link.sources[0].file = instruction.destination.file;
+  link.sources[0].index = instruction.destination.index;
+  links.resize(static_cast<std::size_t>(slots), link);
+  return links;
 }
 
-std::vector<Instruction> expanded(const Instruction& instruction) {
-  if (const MatrixMacro macro = matrix_macro(instruction.opcode); macro.rows != 0) {
-    std::vector<Instruction> rows;
-    for (int row = 0; row < macro.rows; ++row) {
-      Instruction dot = instruction;
-      dot.opcode = macro.dot;
-      dot.destination.mask = static_cast<std::uint8_t>(1u << row);
-      dot.sources[1].index = static_cast<std::uint8_t>(instruction.sources[1].index + row);
-      rows.push_back(dot);
-    }
-    return rows;
-  }
-  if (const ChainMacro macro = chain_macro(instruction.opcode); macro.slots != 0) {
-    Instruction link = instruction;
-    link.opcode = macro.first;
-    std::vector<Instruction> chain{link};
-    link.opcode = Opcode::mul;
-    link.source_count = 1;
-    if (instruction.destination.file == RegisterFile::temporary) {
-      link.sources[0] = Source{RegisterFile::temporary, instruction.destination.index, {0, 1, 2, 3}, false, false};
-    }
-    chain.resize(static_cast<std::size_t>(macro.slots), link);
-    return chain;
-  }
+std::vector<Instruction> expanded(const Instruction& instruction, isa::Version version) {
+  if (const auto shape = isa::matrix_shape(instruction.opcode); shape.rows != 0)
+    return matrix_rows(instruction, shape);
+  const isa::OpcodeInfo* info = isa::find_opcode(version, instruction.opcode);
+  if (info && info->slots > 1) return chain(instruction, info->slots);
   return {instruction};
 }
 
 // Components of the source operand (before its swizzle) that source `index` of the instruction uses.
 unsigned used_components(const Instruction& instruction, int index) {
   switch (instruction.opcode) {
-    case Opcode::dp3: return 0x7;
-    case Opcode::dp4: return 0xf;
-    case Opcode::lit: return 0xb;                     // x, y, w
-    case Opcode::dst: return index == 0 ? 0x6 : 0xa;  // y, z and y, w
+    case Opcode::dp3:
+      return 0x7;
+    case Opcode::dp4:
+      return 0xf;
+    case Opcode::lit:
+      return 0xb;  // x, y, w
+    case Opcode::dst:
+      return index == 0 ? 0x6 : 0xa;  // y, z and y, w
     case Opcode::rcp:
     case Opcode::rsq:
     case Opcode::expp:
-    case Opcode::logp: return 0x8;  // a replicated component: the last of the swizzle is any of them
-    default: return instruction.destination.mask;
+    case Opcode::logp:
+      return 0x8;  // a replicated component: the last of the swizzle is any of them
+    default:
+      return instruction.destination.mask;
   }
 }
 
@@ -118,15 +102,19 @@ ComponentMask reads_of(const Instruction& instruction) {
 ComponentMask writes_of(const Instruction& instruction) {
   if (instruction.opcode == Opcode::nop) return 0;
   switch (instruction.destination.file) {
-    case RegisterFile::temporary: return ComponentMask{instruction.destination.mask} << (4 * instruction.destination.index);
-    case RegisterFile::address: return kAddress;
-    default: return 0;
+    case RegisterFile::temporary:
+      return ComponentMask{instruction.destination.mask} << (4 * instruction.destination.index);
+    case RegisterFile::address:
+      return kAddress;
+    default:
+      return 0;
   }
 }
 
 bool writes_output(const Instruction& instruction) {
   const RegisterFile file = instruction.destination.file;
-  return instruction.opcode != Opcode::nop && file != RegisterFile::temporary && file != RegisterFile::address;
+  return instruction.opcode != Opcode::nop && file != RegisterFile::temporary &&
+         file != RegisterFile::address;
 }
 
 bool uses_third_port(Opcode opcode) {
@@ -151,9 +139,10 @@ bool can_pair(const Instruction& first, const Instruction& second) {
   if (first.opcode == Opcode::nop || second.opcode == Opcode::nop) return false;
   if (is_scalar(first.opcode) == is_scalar(second.opcode)) return false;
   const Instruction& vector = is_scalar(first.opcode) ? second : first;
-  return !uses_third_port(vector.opcode) && (writes_of(first) & (reads_of(second) | writes_of(second))) == 0 &&
-         at_most_one(first, second, RegisterFile::constant) && at_most_one(first, second, RegisterFile::input) &&
-         !(writes_output(first) && writes_output(second));
+  return !uses_third_port(vector.opcode) &&
+         (writes_of(first) & (reads_of(second) | writes_of(second))) == 0 &&
+         at_most_one(first, second, RegisterFile::constant) &&
+         at_most_one(first, second, RegisterFile::input) && !(writes_output(first) && writes_output(second));
 }
 
 void add(IssueSlot& slot, const Instruction& instruction) {
@@ -172,7 +161,7 @@ void add(IssueSlot& slot, const Instruction& instruction) {
 std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec) {
   std::vector<Instruction> instructions;
   for (const Instruction& instruction : program.instructions) {
-    for (const Instruction& part : expanded(instruction)) instructions.push_back(part);
+    for (const Instruction& part : expanded(instruction, program.version)) instructions.push_back(part);
   }
   std::vector<IssueSlot> slots;
   for (std::size_t i = 0; i < instructions.size(); ++i) {
@@ -257,7 +246,8 @@ std::vector<GroupSchedule> group_schedules(const std::vector<IssueSlot>& slots, 
 
 double clocks_per_vertex(const isa::Program& program, const Machine::Vertex& spec) {
   const auto slots = issue_slots(program, spec);
-  const Cycle group = group_schedules(slots, spec).back().issue_cycles + static_cast<Cycle>(spec.group_start_cycles);
+  const Cycle group =
+      group_schedules(slots, spec).back().issue_cycles + static_cast<Cycle>(spec.group_start_cycles);
   return static_cast<double>(group) / spec.threads;
 }
 

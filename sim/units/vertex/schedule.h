@@ -8,11 +8,13 @@
 #include "model/machine/machine.h"
 #include "sim/kernel/cycle.h"
 
-// When a vertex unit issues the instructions of a group of vertices. A vs_1_1 program has no branches and touches no
-// memory, so this is a function of the program, the size of the group and the unit's parameters alone.
+// When a vertex unit issues the instructions of a group of vertices. A vs_1_1 program has no branches and
+// touches no memory, so this is a function of the program, the size of the group and the unit's parameters
+// alone.
 namespace splatscope::sim {
 
-// Register components that an instruction reads or writes: bit 4r + c is component c of temporary r, 48 is a0.x.
+// Register components that an instruction reads or writes: bit 4r + c is component c of temporary r, 48 is
+// a0.x.
 using ComponentMask = std::uint64_t;
 inline constexpr int kComponents = 49;
 
@@ -26,13 +28,14 @@ struct IssueSlot {
 };
 
 // The slots of a program in order, macros expanded. Two neighbours share a slot where the unit pairs
-// (`vertex.pairing`) and: one is a vector and one a scalar instruction; neither needs the other's result; together
-// they read at most one constant and one input register; the vector one leaves the third operand port free (it is not
-// add, sub or mad); at most one of them writes an output register.
+// (`vertex.pairing`) and: one is a vector and one a scalar instruction; neither needs the other's result;
+// together they read at most one constant and one input register; the vector one leaves the third operand
+// port free (it is not add, sub or mad); at most one of them writes an output register.
 std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec);
 
-// The issue logic of a unit, cycle by cycle: the threads (vertices) of a group take turns, and each cycle the first one
-// in turn issues whose operands are there, and for whose scalar instruction the scalar unit is free.
+// The issue logic of a unit, cycle by cycle: the threads (vertices) of a group take turns, and each cycle the
+// first one in turn issues whose operands are there, and for whose scalar instruction the scalar unit is
+// free.
 class IssueLogic {
  public:
   IssueLogic(const std::vector<IssueSlot>& slots, const Machine::Vertex& spec);
@@ -42,7 +45,7 @@ class IssueLogic {
   // One cycle. Returns the thread that issued, or -1.
   int issue();
   bool done() const { return left_ == 0; }
-  Cycle now() const { return now_; }                // cycles since the start
+  Cycle now() const { return now_; }                  // cycles since the start
   Cycle last_result() const { return last_result_; }  // cycles from the start to the last result
 
  private:

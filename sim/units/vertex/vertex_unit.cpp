@@ -16,7 +16,9 @@ void VertexUnit::connect(Channel<VertexGroup>& in, Channel<VertexGroup>& out) {
 }
 
 // Its one item is the end of the draw: which unit gets how many groups is found on the way.
-std::uint64_t VertexUnit::start(const DrawJob& job) { return job.work->shaded_vertices.empty() ? 0 : 1; }
+std::uint64_t VertexUnit::start(const DrawJob& job) {
+  return job.work->shaded_vertices.empty() ? 0 : 1;
+}
 
 bool VertexUnit::retire(Cycle now) {
   if (results_.empty() || results_.front().at > now || !out_->can_push(now)) return false;
@@ -81,7 +83,8 @@ Step VertexUnit::waiting(Cycle now) const {
   if (results_.empty()) return nothing_to_take(in_->next_visible());
   const Cycle due = results_.front().at;
   if (due <= now) {
-    const Cycle next = results_.size() < kInPipeline ? std::min(out_->next_free(), in_->next_visible()) : out_->next_free();
+    const Cycle next =
+        results_.size() < kInPipeline ? std::min(out_->next_free(), in_->next_visible()) : out_->next_free();
     return blocked(out_->consumer(), next);
   }
   return busy(results_.size() < kInPipeline ? std::min(due, in_->next_visible()) : due);
@@ -94,7 +97,8 @@ std::vector<Statistic> VertexUnit::statistics() const {
 }
 
 std::string VertexUnit::state() const {
-  return std::to_string(results_.size()) + " groups in the pipeline, next start at " + std::to_string(next_start_);
+  return std::to_string(results_.size()) + " groups in the pipeline, next start at " +
+         std::to_string(next_start_);
 }
 
 }  // namespace splatscope::sim

@@ -23,8 +23,8 @@ struct VertexSchedule {
   std::uint64_t instructions = 0;     // slots as Direct3D counts them
 };
 
-// One programmable vertex unit. Groups issue one after the other; while the results of one are still in the pipeline
-// the next may issue.
+// One programmable vertex unit. Groups issue one after the other; while the results of one are still in the
+// pipeline the next may issue.
 class VertexUnit final : public DrawUnit {
  public:
   // `schedules`: of the programs of the trace, by DrawJob::vertex_program; outlives the unit.

@@ -29,7 +29,8 @@ std::uint64_t VertexFetch::start(const DrawJob& job) {
   const Draw& draw = *job.draw;
   if (job.work->triangles.empty()) return 0;
   index_port_ = places_ports_[static_cast<std::size_t>(places_[draw.index_buffer])].indices;
-  cache_.connect(*places_ports_[static_cast<std::size_t>(places_[draw.vertex_buffer])].vertices, job.vertex_address);
+  cache_.connect(*places_ports_[static_cast<std::size_t>(places_[draw.vertex_buffer])].vertices,
+                 job.vertex_address);
   cache_.invalidate();
   const auto line_bytes = static_cast<std::uint32_t>(spec_.line_bytes);
   const auto indices = static_cast<std::uint32_t>(3 * job.work->triangles.size());
@@ -200,8 +201,8 @@ std::vector<Statistic> VertexFetch::statistics() const {
 }
 
 std::string VertexFetch::state() const {
-  return "triangle " + std::to_string(triangle_) + ", groups delivered " + std::to_string(delivered_) + " of " +
-         std::to_string(groups_) + ", index lines taken " + std::to_string(taken_) + " of " +
+  return "triangle " + std::to_string(triangle_) + ", groups delivered " + std::to_string(delivered_) +
+         " of " + std::to_string(groups_) + ", index lines taken " + std::to_string(taken_) + " of " +
          std::to_string(asked_) + " asked for";
 }
 

@@ -9,8 +9,8 @@
 
 namespace splatscope::sim {
 
-// Reads indices and the vertices that are new among them, from video or AGP memory, and hands groups of vertices to
-// the vertex units: the oldest group to the unit that is free first, ties to the lower number.
+// Reads indices and the vertices that are new among them, from video or AGP memory, and hands groups of
+// vertices to the vertex units: the oldest group to the unit that is free first, ties to the lower number.
 class VertexFetch final : public DrawUnit {
  public:
   // Ports to one place of memory; both null: no draw of the trace has a buffer there.
@@ -55,7 +55,8 @@ class VertexFetch final : public DrawUnit {
 
   // Indices: lines asked for, lines taken, and the lines that this draw spans.
   std::uint32_t first_index_line_ = 0, index_lines_ = 0, asked_ = 0, taken_ = 0;
-  // The triangle that the walk is at, the new vertices of it still to gather, when its indices have been taken.
+  // The triangle that the walk is at, the new vertices of it still to gather, when its indices have been
+  // taken.
   std::size_t triangle_ = 0;
   std::uint32_t new_vertices_ = 0;
   bool in_triangle_ = false;

@@ -9,15 +9,16 @@
 
 namespace splatscope::sim {
 
-// Tests quads against the depth buffer through a write-back cache, and sends on what passed and has colour. Draws that
-// neither test nor write depth pass through. Lines that a fast clear marked are made in the cache, not read.
-// Not modelled: compression and hierarchical rejection of depth.
-class DepthTest final : public DrawUnit {
+// Tests quads against the depth buffer through a write-back cache, and sends on what passed and has colour.
+// Draws that neither test nor write depth pass through. Lines that a fast clear marked are made in the cache,
+// not read. Not modelled: compression and hierarchical rejection of depth.
+class DepthUnit final : public DrawUnit {
  public:
-  DepthTest(std::string name, Completion& completion, const Machine::Depth& spec, const FrameLines& lines,
+  DepthUnit(std::string name, Completion& completion, const Machine::Depth& spec, const FrameLines& lines,
             int quads_per_clock);
   // `out`: quads to texture or pixel unit; nullptr: no draw writes colour.
-  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port, std::uint32_t address);
+  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port,
+               std::uint32_t address);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;

@@ -1,32 +1,34 @@
-#include "sim/units/depth/depth_test.h"
+#include "sim/units/depth/depth_unit.h"
 
 #include <algorithm>
 
 namespace splatscope::sim {
 
-DepthTest::DepthTest(std::string name, Completion& completion, const Machine::Depth& spec, const FrameLines& lines,
-                     int quads_per_clock)
+DepthUnit::DepthUnit(std::string name, Completion& completion, const Machine::Depth& spec,
+                     const FrameLines& lines, int quads_per_clock)
     : DrawUnit(std::move(name), completion),
       lines_(lines),
       quads_per_clock_(quads_per_clock),
       cache_({spec.cache_lines, spec.cache_ways, lines.line_bytes(), spec.pending}),
       cleared_(lines.lines(), false) {}
 
-void DepthTest::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port,
+void DepthUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port,
                         std::uint32_t address) {
   in_ = &in;
   out_ = out;
   cache_.connect(port, address);
 }
 
-std::uint64_t DepthTest::start(const DrawJob& job) { return job.work->quads.size(); }
+std::uint64_t DepthUnit::start(const DrawJob& job) {
+  return job.work->quads.size();
+}
 
-void DepthTest::clear(bool fast) {
+void DepthUnit::clear(bool fast) {
   cache_.invalidate();
   std::fill(cleared_.begin(), cleared_.end(), fast);
 }
 
-bool DepthTest::leave(Cycle now) {
+bool DepthUnit::leave(Cycle now) {
   if (cache_.empty() || !cache_.is_ready(now)) return false;
   const QuadWork& quad = job().work->quads[cache_.oldest()];
   const bool colored = is_colored(job(), quad);
@@ -39,7 +41,7 @@ bool DepthTest::leave(Cycle now) {
   return true;
 }
 
-bool DepthTest::enter(Cycle now) {
+bool DepthUnit::enter(Cycle now) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   const std::uint32_t number = in_->front();
   const DrawState& state = job().draw->state;
@@ -56,14 +58,14 @@ bool DepthTest::enter(Cycle now) {
   return true;
 }
 
-Step DepthTest::flush(Cycle now) {
+Step DepthUnit::flush(Cycle now) {
   if (cache_.flush(now)) return busy(cache_.next_flush());
   flushing_ = false;
   completion().finish(now);
   return busy(now + 1);
 }
 
-Step DepthTest::advance(Cycle now) {
+Step DepthUnit::advance(Cycle now) {
   if (flushing_) return flush(now);
   in_the_way_ = nullptr;
   bool moved = false;
@@ -82,14 +84,14 @@ Step DepthTest::advance(Cycle now) {
   return blocked(cache_.server(), std::min(next, cache_.next_ready()));
 }
 
-std::vector<Statistic> DepthTest::statistics() const {
+std::vector<Statistic> DepthUnit::statistics() const {
   return {{"tested", "quads", "looked up in the depth cache", tested_},
           {"passed", "quads", "with a pixel that passed", passed_},
           {"misses", "lines", "that the depth cache did not hold", cache_.misses()},
           {"write_backs", "lines", "written to memory", cache_.write_backs()}};
 }
 
-std::string DepthTest::state() const {
+std::string DepthUnit::state() const {
   return cache_.empty() ? "" : "oldest quad " + std::to_string(cache_.oldest());
 }
 

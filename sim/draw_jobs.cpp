@@ -1,0 +1,150 @@
+#include "sim/draw_jobs.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "model/error.h"
+#include "model/isa/opcode.h"
+#include "model/isa/program.h"
+
+namespace splatscope::sim {
+namespace {
+
+std::uint32_t bytes_of(FrameFormat format) {
+  return format == FrameFormat::unorm8 ? 4 : 16;
+}
+
+std::uint32_t bytes_of(DepthFormat format) {
+  return format == DepthFormat::z16 ? 2 : 4;
+}
+
+// Blocks of 4x4 texels, 16 bytes each.
+std::uint64_t texture_bytes(const Texture& texture) {
+  return std::uint64_t{(texture.width + 3) / 4} * ((texture.height + 3) / 4) * 16;
+}
+
+// Gives out addresses, each at the start of a row of all banks and channels.
+class Allocator {
+ public:
+  explicit Allocator(const Machine::Memory& memory)
+      : alignment_(static_cast<std::uint64_t>(memory.row_bytes) * static_cast<std::uint64_t>(memory.banks) *
+                   static_cast<std::uint64_t>(memory.channels)) {}
+  std::uint32_t take(std::uint64_t bytes) {
+    const std::uint64_t address = next_;
+    next_ += (bytes + alignment_ - 1) / alignment_ * alignment_;
+    if (next_ > std::numeric_limits<std::uint32_t>::max()) {
+      throw UserError("trace", 0,
+                      "more than 4 GiB of buffers and textures, expected what a machine of 2002 can hold");
+    }
+    return static_cast<std::uint32_t>(address);
+  }
+
+ private:
+  std::uint64_t alignment_;
+  std::uint64_t next_ = 0;
+};
+
+std::uint64_t clocks_of(const isa::Program& program, const Machine::Pixel& spec) {
+  const auto arithmetic = std::count_if(
+      program.instructions.begin(), program.instructions.end(), [&](const isa::Instruction& instruction) {
+        const isa::OpcodeInfo* info = isa::find_opcode(program.version, instruction.opcode);
+        return info && info->unit == isa::OpcodeClass::arithmetic;
+      });
+  const auto rate = static_cast<std::uint64_t>(spec.instructions_per_clock);
+  return std::max<std::uint64_t>((static_cast<std::uint64_t>(arithmetic) + rate - 1) / rate, 1);
+}
+
+isa::Program load(const Trace& trace, std::uint32_t program) {
+  return isa::load(trace.programs[program].text, trace.programs[program].name);
+}
+
+VertexSchedule schedule_of(const isa::Program& program, const Machine::Vertex& spec) {
+  VertexSchedule schedule;
+  schedule.slots = issue_slots(program, spec);
+  schedule.groups = group_schedules(schedule.slots, spec);
+  return schedule;
+}
+
+void count_work(DrawJob& job) {
+  std::uint64_t quads = 0;
+  std::uint64_t vertices = 0;
+  for (const TriangleWork& triangle : job.work->triangles) {
+    job.triangles_set_up += triangle.pieces != 0;
+    quads += triangle.quad_count;
+    vertices += triangle.new_vertices;
+  }
+  std::uint64_t blocks = 0;
+  for (const QuadWork& quad : job.work->quads) {
+    job.colored_quads += is_colored(job, quad);
+    blocks += quad.texel_block_count;
+  }
+  const bool fits = quads == job.work->quads.size() && vertices == job.work->shaded_vertices.size() &&
+                    blocks == job.work->texel_blocks.size() &&
+                    job.work->triangles.size() == job.draw->index_count / 3;
+  if (!fits)
+    throw ModelError("the work record of command " + std::to_string(job.work->command) + " does not add up");
+}
+
+}  // namespace
+
+MemoryLayout lay_out(const Trace& trace, const Machine& machine) {
+  MemoryLayout layout;
+  layout.color = FrameLines::of(trace.width, trace.height, bytes_of(machine.numbers.frame));
+  layout.depth = FrameLines::of(trace.width, trace.height, bytes_of(machine.numbers.depth));
+  Allocator video(machine.memory);
+  Allocator agp(machine.memory);
+  layout.color_address = video.take(layout.color.bytes());
+  layout.depth_address = video.take(layout.depth.bytes());
+  for (const Texture& texture : trace.textures) layout.textures.push_back(video.take(texture_bytes(texture)));
+  for (const Buffer& buffer : trace.buffers) {
+    layout.buffers.push_back((buffer.place == MemoryPlace::agp ? agp : video).take(buffer.bytes.size()));
+  }
+  return layout;
+}
+
+Needs needs_of(const Trace& trace) {
+  Needs needs;
+  for (const Command& command : trace.commands) {
+    const Draw* draw = std::get_if<Draw>(&command);
+    if (!draw) continue;
+    for (const std::uint32_t buffer : {draw->vertex_buffer, draw->index_buffer}) {
+      needs.agp |= trace.buffers[buffer].place == MemoryPlace::agp;
+    }
+    needs.depth |= draw->state.depth_test || draw->state.depth_write;
+    needs.color |= draw->state.color_write;
+    needs.texture |= draw->state.color_write && draw->texture.has_value();
+  }
+  return needs;
+}
+
+PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                            const MemoryLayout& layout) {
+  PreparedDraws prepared;
+  std::map<std::uint32_t, std::size_t> schedule_numbers;  // by program
+  std::size_t next_work = 0;
+  for (std::size_t command = 0; command < trace.commands.size(); ++command) {
+    const Draw* draw = std::get_if<Draw>(&trace.commands[command]);
+    if (!draw) continue;
+    if (next_work == work.size() || work[next_work].command != command) {
+      throw ModelError("command " + std::to_string(command) + " of the trace has no work record");
+    }
+    DrawJob job;
+    job.draw = draw;
+    job.work = &work[next_work++];
+    const auto [found, is_new] =
+        schedule_numbers.try_emplace(draw->vertex_program, prepared.schedules.size());
+    if (is_new) prepared.schedules.push_back(schedule_of(load(trace, draw->vertex_program), machine.vertex));
+    job.vertex_program = found->second;
+    if (draw->pixel_program) job.pixel_clocks = clocks_of(load(trace, *draw->pixel_program), machine.pixel);
+    job.vertex_address = layout.buffers[draw->vertex_buffer];
+    job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
+    if (draw->texture) job.texture_address = layout.textures[*draw->texture];
+    count_work(job);
+    prepared.jobs.push_back(job);
+  }
+  if (next_work != work.size()) throw ModelError("more work records than draws");
+  return prepared;
+}
+
+}  // namespace splatscope::sim

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "model/machine/machine.h"
+#include "model/work/work.h"
+#include "sim/units/draw_unit.h"
+#include "sim/units/frame_lines.h"
+#include "sim/units/vertex/vertex_unit.h"
+
+namespace splatscope::sim {
+
+// Where everything lies in memory: surfaces, textures and buffers one after the other, each at the start of a
+// row of all banks. AGP buffers have their own addresses.
+struct MemoryLayout {
+  FrameLines color;
+  FrameLines depth;
+  std::uint32_t color_address = 0;
+  std::uint32_t depth_address = 0;
+  std::vector<std::uint32_t> textures;
+  std::vector<std::uint32_t> buffers;
+};
+MemoryLayout lay_out(const Trace& trace, const Machine& machine);
+
+// What the draws of a trace need, over all of them.
+struct Needs {
+  bool agp = false;
+  bool depth = false;    // some draw tests or writes depth
+  bool color = false;    // some draw writes colour
+  bool texture = false;  // some draw that writes colour samples a texture
+};
+Needs needs_of(const Trace& trace);
+
+// The schedules of the vertex programs that the draws use, and the draws with their work, in order.
+// UserError where a program does not load, ModelError where trace and work do not fit together.
+struct PreparedDraws {
+  std::vector<VertexSchedule> schedules;
+  std::vector<DrawJob> jobs;
+};
+PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                            const MemoryLayout& layout);
+
+}  // namespace splatscope::sim

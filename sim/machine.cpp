@@ -1,0 +1,237 @@
+#include "sim/machine.h"
+
+#include <cmath>
+
+#include "sim/draw_jobs.h"
+#include "sim/units/agp/agp_bus.h"
+#include "sim/units/blend/blend_unit.h"
+#include "sim/units/depth/depth_unit.h"
+#include "sim/units/memory/memory_channel.h"
+#include "sim/units/pixel/pixel_unit.h"
+#include "sim/units/primitive/primitive_assembly.h"
+#include "sim/units/raster/rasteriser.h"
+#include "sim/units/setup/triangle_setup.h"
+#include "sim/units/texture/texture_unit.h"
+#include "sim/units/vertex_fetch/vertex_fetch.h"
+
+namespace splatscope::sim {
+namespace {
+
+Femtoseconds period_of(double megahertz) {
+  return static_cast<Femtoseconds>(std::llround(1e9 / megahertz));
+}
+
+// Creates units and what connects them. Units come before their channels: a channel asks for their clock
+// domains.
+class Builder {
+ public:
+  Builder(SimulatedMachine& machine, const Machine& spec) : machine_(machine), spec_(spec) {}
+
+  template <class T, class... Arguments>
+  T& unit(ClockDomain& domain, Arguments&&... arguments) {
+    auto made = std::make_unique<T>(std::forward<Arguments>(arguments)...);
+    T& reference = *made;
+    domain.add(reference, static_cast<std::uint32_t>(machine_.units.size()));
+    machine_.units.push_back(std::move(made));
+    return reference;
+  }
+
+  template <class T>
+  Channel<T>& channel(Unit& from, Unit& to, int capacity, int latency = 1) {
+    auto made = std::make_unique<Channel<T>>(from.name() + " to " + to.name(), from, to, capacity, latency);
+    Channel<T>& reference = *made;
+    machine_.channels.push_back(std::move(made));
+    return reference;
+  }
+
+  // A way of `client` to video memory, with `reads` in flight at most.
+  MemoryPort& video_port(Unit& client, std::vector<MemoryChannel*>& memory, int reads) {
+    MemoryPort& port = add_port(client, reads);
+    std::vector<Channel<MemoryRequest>*> requests;
+    for (MemoryChannel* served_by : memory) {
+      requests.push_back(&channel<MemoryRequest>(client, *served_by, spec_.memory.request_queue));
+      served_by->connect(port, *requests.back());
+    }
+    port.connect(requests, static_cast<std::uint32_t>(spec_.memory.interleave_bytes));
+    return port;
+  }
+
+  MemoryPort& agp_port(Unit& client, AgpBus& agp, int reads) {
+    MemoryPort& port = add_port(client, reads);
+    auto& requests = channel<MemoryRequest>(client, agp, spec_.agp.queue);
+    agp.connect(port, requests);
+    port.connect({&requests}, static_cast<std::uint32_t>(spec_.memory.interleave_bytes));
+    return port;
+  }
+
+ private:
+  MemoryPort& add_port(Unit& client, int reads) {
+    machine_.ports.push_back(std::make_unique<MemoryPort>(client, static_cast<std::uint32_t>(reads)));
+    return *machine_.ports.back();
+  }
+
+  SimulatedMachine& machine_;
+  const Machine& spec_;
+};
+
+// Reads in flight of a frame cache: each waiting quad's line and the entering one's, in parts of one memory
+// channel.
+int frame_reads(const Machine& spec, const FrameLines& lines, int pending) {
+  const int parts = static_cast<int>(lines.line_bytes()) / spec.memory.interleave_bytes;
+  return (pending + 1) * std::max(parts, 1);
+}
+
+// Reads in flight of the vertex cache: a group's vertices may each span lines of the widest stride.
+int vertex_reads(const Trace& trace, const Machine& spec) {
+  int widest = 1;
+  for (const Command& command : trace.commands) {
+    if (const Draw* draw = std::get_if<Draw>(&command))
+      widest = std::max(widest, static_cast<int>(draw->vertex_stride));
+  }
+  const int lines = (widest + spec.fetch.line_bytes - 2) / spec.fetch.line_bytes + 1;
+  return (spec.fetch.pending_groups + 2) * spec.vertex.threads * lines;
+}
+
+void list_left_out(const Needs& needs, std::vector<UnitLeftOut>& left_out) {
+  if (!needs.agp) left_out.push_back({"agp", "every buffer is in video memory"});
+  if (!needs.depth) left_out.push_back({"depth", "no draw tests or writes depth"});
+  if (!needs.color) {
+    for (const char* name : {"texture", "pixel", "blend"})
+      left_out.push_back({name, "no draw writes colour"});
+  } else if (!needs.texture) {
+    left_out.push_back({"texture", "no draw that writes colour samples a texture"});
+  }
+}
+
+}  // namespace
+
+SimulatedMachine::SimulatedMachine(const Machine& machine, Scheduler scheduler)
+    : core("core", period_of(machine.clock.core_megahertz), period_of(machine.clock.core_megahertz),
+           scheduler),
+      bus("bus", period_of(machine.clock.bus_megahertz), period_of(machine.clock.core_megahertz), scheduler) {
+  core.set_peers({&bus});
+  bus.set_peers({&core});
+}
+
+std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<const DrawWork> work,
+                                                const Machine& spec, Scheduler scheduler) {
+  auto machine = std::make_unique<SimulatedMachine>(spec, scheduler);
+  const MemoryLayout layout = lay_out(trace, spec);
+  const Needs needs = needs_of(trace);
+  PreparedDraws draws = prepare_draws(trace, work, spec, layout);
+  machine->schedules = std::move(draws.schedules);
+  machine->jobs = std::move(draws.jobs);
+  list_left_out(needs, machine->left_out);
+
+  // The units, in the order of the pipeline; the command processor is called last in its domain.
+  Builder build(*machine, spec);
+  ClockDomain& core = machine->core;
+  ClockDomain& bus = machine->bus;
+  Completion& completion = machine->completion;
+  const int width = spec.pixel.quads_per_clock;
+  auto& fetch = build.unit<VertexFetch>(core, "vertex_fetch", completion, spec.fetch, spec.vertex.threads);
+  std::vector<VertexUnit*> vertex;
+  for (int i = 0; i < spec.vertex.units; ++i) {
+    vertex.push_back(&build.unit<VertexUnit>(core, "vertex" + std::to_string(i), completion, spec.vertex,
+                                             machine->schedules));
+  }
+  auto& assembly = build.unit<PrimitiveAssembly>(core, "primitive", completion, spec.primitive);
+  auto& setup = build.unit<TriangleSetup>(core, "setup", completion, spec.setup);
+  auto& raster = build.unit<Rasteriser>(core, "raster", completion, spec.raster, width);
+  DepthUnit* depth = needs.depth
+                         ? &build.unit<DepthUnit>(core, "depth", completion, spec.depth, layout.depth, width)
+                         : nullptr;
+  TextureUnit* texture =
+      needs.texture ? &build.unit<TextureUnit>(core, "texture", completion, spec.texture, width) : nullptr;
+  PixelUnit* pixel = needs.color ? &build.unit<PixelUnit>(core, "pixel", completion, width) : nullptr;
+  BlendUnit* blend = needs.color
+                         ? &build.unit<BlendUnit>(core, "blend", completion, spec.blend, layout.color, width)
+                         : nullptr;
+  std::vector<MemoryChannel*> memory;
+  for (int i = 0; i < spec.memory.channels; ++i) {
+    memory.push_back(&build.unit<MemoryChannel>(core, "memory" + std::to_string(i), spec.memory));
+  }
+  auto& command = build.unit<CommandProcessor>(core, "command", completion);
+  const double cycles_per_nanosecond = spec.clock.bus_megahertz / 1000;
+  AgpBus* agp = needs.agp ? &build.unit<AgpBus>(bus, "agp", spec.agp, cycles_per_nanosecond) : nullptr;
+  const Host::Frame frame{std::uint64_t{trace.width} * trace.height,
+                          static_cast<int>(layout.color.bytes_per_pixel)};
+  auto& host = build.unit<Host>(bus, "host", spec.host, cycles_per_nanosecond, trace, frame);
+  machine->host = &host;
+
+  // Host and command processor, across the boundary of the clocks.
+  auto& orders = build.channel<Order>(host, command, 1);
+  auto& reports = build.channel<std::uint32_t>(command, host, 1);
+  host.connect(orders, reports);
+  command.connect(orders, reports, build.video_port(command, memory, 1));
+
+  // Geometry.
+  VertexFetch::Ports video{&build.video_port(fetch, memory, spec.fetch.index_lines),
+                           &build.video_port(fetch, memory, vertex_reads(trace, spec))};
+  VertexFetch::Ports over_agp;
+  if (agp) {
+    over_agp = {&build.agp_port(fetch, *agp, spec.fetch.index_lines),
+                &build.agp_port(fetch, *agp, vertex_reads(trace, spec))};
+  }
+  std::vector<Channel<VertexGroup>*> groups_in, groups_out;
+  for (VertexUnit* unit : vertex) {
+    groups_in.push_back(&build.channel<VertexGroup>(fetch, *unit, 1));
+    groups_out.push_back(&build.channel<VertexGroup>(*unit, assembly, spec.vertex.output_groups));
+    unit->connect(*groups_in.back(), *groups_out.back());
+  }
+  auto& order =
+      build.channel<std::uint8_t>(fetch, assembly, spec.vertex.units * (spec.vertex.output_groups + 4));
+  fetch.connect(video, over_agp, groups_in, order);
+  std::vector<MemoryPlace> places;
+  for (const Buffer& buffer : trace.buffers) places.push_back(buffer.place);
+  fetch.set_places(places);
+  auto& triangles = build.channel<std::uint32_t>(assembly, setup, spec.primitive.queue);
+  auto& set_up = build.channel<std::uint32_t>(setup, raster, spec.setup.queue, spec.setup.latency);
+  assembly.connect(order, groups_out, triangles);
+  setup.connect(triangles, set_up);
+
+  // Quads: rasteriser, then what there is of depth test, texture unit, pixel unit and blending.
+  using Quads = Channel<std::uint32_t>;
+  Unit* first_of_color = texture ? static_cast<Unit*>(texture) : pixel;
+  Unit* after_raster = depth ? static_cast<Unit*>(depth) : first_of_color;
+  Quads* quads = after_raster ? &build.channel<std::uint32_t>(raster, *after_raster, spec.raster.queue,
+                                                              spec.raster.latency)
+                              : nullptr;
+  raster.connect(set_up, quads, depth != nullptr);
+  if (depth) {
+    Quads* passed = first_of_color ? &build.channel<std::uint32_t>(*depth, *first_of_color, spec.depth.queue,
+                                                                   spec.depth.latency)
+                                   : nullptr;
+    depth->connect(*quads, passed,
+                   build.video_port(*depth, memory, frame_reads(spec, layout.depth, spec.depth.pending)),
+                   layout.depth_address);
+    quads = passed;
+  }
+  if (texture) {
+    auto& sampled = build.channel<std::uint32_t>(*texture, *pixel, spec.texture.queue, spec.texture.latency);
+    texture->connect(*quads, sampled, build.video_port(*texture, memory, 4 * (spec.texture.pending + 1)));
+    quads = &sampled;
+  }
+  if (pixel) {
+    auto& shaded = build.channel<std::uint32_t>(*pixel, *blend, spec.pixel.queue, spec.pixel.latency);
+    pixel->connect(*quads, shaded);
+    blend->connect(shaded,
+                   build.video_port(*blend, memory, frame_reads(spec, layout.color, spec.blend.pending)),
+                   layout.color_address);
+  }
+
+  // What a draw begins in, and what a clear writes.
+  std::vector<DrawUnit*> draw_units{&fetch, &assembly, &setup, &raster};
+  draw_units.insert(draw_units.end(), vertex.begin(), vertex.end());
+  for (DrawUnit* unit : {static_cast<DrawUnit*>(depth), static_cast<DrawUnit*>(texture),
+                         static_cast<DrawUnit*>(pixel), static_cast<DrawUnit*>(blend)}) {
+    if (unit) draw_units.push_back(unit);
+  }
+  command.set_draws(machine->jobs, draw_units);
+  std::vector<CommandProcessor::Surface> cleared{{layout.color_address, layout.color.bytes()}};
+  if (depth && !spec.depth.fast_clear) cleared.push_back({layout.depth_address, layout.depth.bytes()});
+  command.set_frame(depth, spec.depth.fast_clear, blend, cleared);
+  return machine;
+}
+
+}  // namespace splatscope::sim

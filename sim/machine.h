@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "model/machine/machine.h"
+#include "model/work/work.h"
+#include "sim/kernel/channel.h"
+#include "sim/kernel/clock_domain.h"
+#include "sim/units/command/command_processor.h"
+#include "sim/units/host/host.h"
+#include "sim/units/vertex/vertex_unit.h"
+
+namespace splatscope::sim {
+
+// A unit that the trace does not need, and why.
+struct UnitLeftOut {
+  std::string name;
+  std::string why;
+};
+
+// The simulated machine for one trace: its units, what connects them, and the draws made ready for them.
+// Two clock domains: *core* (vertex to blending, and the memory, which both machines run at the core's
+// clock), and *bus* (host and AGP).
+struct SimulatedMachine {
+  SimulatedMachine(const Machine& machine, Scheduler scheduler);
+  SimulatedMachine(const SimulatedMachine&) = delete;
+  SimulatedMachine& operator=(const SimulatedMachine&) = delete;
+
+  ClockDomain core;
+  ClockDomain bus;
+  Completion completion;
+  std::vector<VertexSchedule> schedules;
+  std::vector<DrawJob> jobs;
+  std::vector<std::unique_ptr<Unit>> units;  // in the order in which they are called, core before bus
+  std::vector<std::unique_ptr<ChannelState>> channels;
+  std::vector<std::unique_ptr<MemoryPort>> ports;
+  std::vector<UnitLeftOut> left_out;
+  Host* host = nullptr;
+};
+
+// Creates the units that the trace needs and connects them. `work`: one record for each Draw of the trace, in
+// order. UserError where a program does not load, ModelError where trace and work do not fit together.
+std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<const DrawWork> work,
+                                                const Machine& machine, Scheduler scheduler);
+
+}  // namespace splatscope::sim

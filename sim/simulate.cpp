@@ -1,0 +1,69 @@
+#include "sim/simulate.h"
+
+#include <array>
+#include <bit>
+
+#include "model/error.h"
+#include "sim/kernel/systemc_clocks.h"
+#include "sim/units/primitive/primitive_assembly.h"
+
+namespace splatscope::sim {
+namespace {
+
+// What every unit and channel holds, for the message of a deadlock.
+std::string dump(const SimulatedMachine& machine) {
+  std::string text;
+  for (const auto& unit : machine.units) {
+    if (const std::string state = unit->state(); !state.empty()) text += "\n  " + unit->name() + ": " + state;
+  }
+  for (const auto& channel : machine.channels) text += "\n  " + channel->describe();
+  return text;
+}
+
+void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit, const Books& books) {
+  UnitBooks entry;
+  entry.name = unit.name();
+  entry.busy = books.cycles[Step::kBusy];
+  entry.starved = books.cycles[Step::kStarved];
+  entry.idle = books.cycles[Step::kIdle];
+  for (const auto& by : machine.units) {
+    const Cycle cycles = books.cycles[Step::kBlocked + by->number()];
+    if (cycles == 0) continue;
+    entry.blocked += cycles;
+    entry.blocked_by.emplace_back(by->name(), cycles);
+  }
+  result.units.push_back(std::move(entry));
+  for (const Statistic& statistic : unit.statistics()) {
+    result.statistics.push_back({unit.name(), std::string(statistic.name), std::string(statistic.unit),
+                                 std::string(statistic.what), statistic.value});
+  }
+  result.event_hash = (std::rotl(result.event_hash, 7) ^ unit.event_hash()) * 0x9e3779b97f4a7c15u;
+}
+
+}  // namespace
+
+Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& spec, Scheduler scheduler,
+                const std::function<void(double)>& progress) {
+  const auto machine = build_machine(trace, work, spec, scheduler);
+  const std::array<ClockDomain*, 2> domains{&machine->core, &machine->bus};
+  run_on_systemc(domains);
+  if (!machine->host->is_finished())
+    throw ModelError("the simulated machine is deadlocked:" + dump(*machine));
+
+  Result result;
+  result.cycles = machine->bus.reference_cycle(machine->host->finished_at());
+  result.seconds = static_cast<double>(machine->core.time(result.cycles)) * 1e-15;
+  for (const ClockDomain* domain : domains) {
+    for (std::size_t place = 0; place < domain->units().size(); ++place) {
+      add_unit(result, *machine, *domain->units()[place], domain->closed_books(place, result.cycles));
+    }
+  }
+  for (const Cycle end : machine->host->command_ends()) {
+    result.command_ends.push_back(machine->bus.reference_cycle(end));
+  }
+  result.units_left_out = machine->left_out;
+  if (progress) progress(1);
+  return result;
+}
+
+}  // namespace splatscope::sim

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "model/machine/machine.h"
+#include "model/work/work.h"
+#include "sim/kernel/clock_domain.h"
+#include "sim/machine.h"
+
+// When it happens: the cycle-level timing of a trace on a machine.
+namespace splatscope::sim {
+
+// Where the cycles of a unit went; they add up to the run's. All in core cycles, also for the units on the
+// bus clock.
+struct UnitBooks {
+  std::string name;
+  Cycle busy = 0;
+  Cycle starved = 0;  // waiting for the unit before it
+  Cycle blocked = 0;  // waiting for another unit to take or to deliver something
+  Cycle idle = 0;     // nothing to do
+  std::vector<std::pair<std::string, Cycle>> blocked_by;  // who, and how long; adds up to `blocked`
+};
+
+struct UnitStatistic {
+  std::string unit_name;  // "texture"
+  std::string name;       // "misses"
+  std::string unit;       // "lines"
+  std::string what;
+  std::uint64_t value = 0;
+};
+
+struct Result {
+  Cycle cycles = 0;  // of the core clock, from the first command to the frame in memory
+  double seconds = 0;
+  std::uint64_t event_hash = 0;  // of every retirement and every memory decision with its cycle
+  std::vector<UnitBooks> units;
+  std::vector<UnitStatistic> statistics;
+  std::vector<UnitLeftOut> units_left_out;
+  std::vector<Cycle> command_ends;  // core cycle at which each command of the trace was done
+
+  double frames_per_second() const { return 1 / seconds; }
+};
+
+// Simulates `trace`, whose draws gave the stages `work` to do (one record for each Draw, in order), on
+// `machine`. `progress` is told the fraction done, from 0 to 1. May be called many times in a process, and
+// from several threads (which then take turns on the SystemC kernel). Throws UserError where a program of the
+// trace does not load, ModelError for a bug of the simulation: work that does not fit the trace, or a
+// deadlock, with what every unit and channel holds.
+Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                Scheduler scheduler = Scheduler::skip_ahead,
+                const std::function<void(double)>& progress = {});
+
+}  // namespace splatscope::sim
