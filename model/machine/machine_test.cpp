@@ -107,7 +107,9 @@ TEST(Machine, SetChangesOneParameter) {
   EXPECT_EQ(machine.host.command_nanoseconds, 5);
   EXPECT_FALSE(machine.depth.fast_clear);
   for (const auto& value : describe(machine)) {
-    if (value.name == "vertex.units") EXPECT_EQ(value.origin.confidence, "set");
+    if (value.name == "vertex.units") {
+      EXPECT_EQ(value.origin.confidence, "set");
+    }
   }
 }
 
