@@ -90,6 +90,17 @@ void pack(fb::FlatBufferBuilder& builder, const Trace& trace) {
   stored::FinishTraceBuffer(builder, root);
 }
 
+// Bytes of everything whose size the trace decides. The rest is small and counted generously.
+std::size_t stored_size(const Trace& trace) {
+  constexpr std::size_t kEach = 512;  // tables, offsets, alignment
+  std::size_t size = kEach;
+  for (const Buffer& b : trace.buffers) size += kEach + b.bytes.size();
+  for (const Texture& t : trace.textures) size += kEach + t.texels.size();
+  for (const ShaderText& p : trace.programs) size += kEach + p.name.size() + p.text.size();
+  constexpr std::size_t kCommand = 4096;  // more than 96 constants and 16 attributes
+  return size + kCommand * trace.commands.size();
+}
+
 // ---- reading
 
 // Unpacks a verified file. A hostile file may name the same bytes many times; what is copied out may
@@ -187,7 +198,11 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
 
 void write_trace(const Trace& trace, const std::filesystem::path& path) {
   check_trace(trace, path.string());
-  fb::FlatBufferBuilder builder;
+  const std::size_t size = stored_size(trace);
+  if (size >= FLATBUFFERS_MAX_BUFFER_SIZE)
+    throw UserError(path.string(), 0,
+                    fmt::format("the trace would take {} bytes, expected less than 2 GiB", size));
+  fb::FlatBufferBuilder builder(size);
   pack(builder, trace);
   write_file(path, std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize())));
 }
