@@ -17,6 +17,7 @@ int run(int argc, char** argv) {
   Invocation invocation;
   app.add_flag("--quiet", invocation.quiet, "no progress bar");
   add_record_command(app, invocation);
+  add_machine_command(app);
   add_trace_command(app);
   add_scene_command(app);
   try {

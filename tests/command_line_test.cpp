@@ -18,7 +18,8 @@ void expect_refused(const Outcome& outcome, const std::string& part) {
 }
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
-  const std::vector<std::vector<std::string>> commands = {{"record"}, {"trace", "info"}, {"scene", "keys"}};
+  const std::vector<std::vector<std::string>> commands = {
+      {"record"}, {"trace", "info"}, {"scene", "keys"}, {"machine", "list"}, {"machine", "show"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = run_program(command);
@@ -100,6 +101,29 @@ TEST(CommandLine, RecordedTraceTellsWhatItHolds) {
   EXPECT_EQ(info.status, 0) << info.error;
   EXPECT_NE(info.out.find("frame      64 x 32"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("draw 2 triangles, splat_ewa.vs"), std::string::npos) << info.out;
+}
+
+TEST(CommandLine, MachinesAreListedAndShown) {
+  const Outcome list = run_program({"machine", "list"});
+  EXPECT_EQ(list.status, 0) << list.error;
+  for (const std::string name : {"geforce4-ti4400", "radeon-8500"}) {
+    EXPECT_NE(list.out.find(name), std::string::npos) << list.out;
+    const Outcome shown = run_program({"machine", "show", name});
+    EXPECT_EQ(shown.status, 0) << shown.error;
+    EXPECT_NE(shown.out.find("vertex.units = "), std::string::npos) << shown.out;
+  }
+}
+
+TEST(CommandLine, WrongMachinesAreRefused) {
+  const ScratchFolder folder;
+  expect_refused(run_program({"machine", "show", "voodoo"}), "voodoo");
+  expect_refused(run_program({"machine", "show", "none.toml"}), "none.toml");
+  folder.file("m.toml", "\n[vertex]\nunts = 2\n");
+  expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:3: ");
+  folder.file("m.toml", "[vertex]\nunits = true\n");
+  expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:2: ");
+  folder.file("m.toml", "[vertex]\nunits = 1000\n");
+  expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:2: ");
 }
 
 // The user's guide holds what the program prints.

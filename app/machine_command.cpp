@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "app/commands.h"
+#include "model/machine/machine.h"
+
+namespace splatscope::app {
+namespace {
+
+// A line a parameter, and under it what it does and where its value comes from.
+void show(const Machine& machine) {
+  std::cout << fmt::format("{}: {}\n", machine.name, machine.title);
+  for (const machine::ParameterValue& p : machine::describe(machine)) {
+    std::cout << fmt::format("\n{} = {}{}{}    ({})\n  {}\n  {}", p.name, p.value, p.unit.empty() ? "" : " ",
+                             p.unit, p.range, p.what, p.origin.confidence);
+    if (!p.origin.fitted_to.empty()) std::cout << " to " << p.origin.fitted_to;
+    if (!p.origin.source.empty()) std::cout << ": " << p.origin.source;
+    std::cout << '\n';
+  }
+}
+
+}  // namespace
+
+void add_machine_command(CLI::App& app) {
+  CLI::App* machine = app.add_subcommand("machine", "the machines that can be simulated");
+  machine->require_subcommand(1);
+  CLI::App* list = machine->add_subcommand("list", "their names");
+  list->footer("Example: splatscope machine list");
+  list->callback([] {
+    for (std::string_view name : machine::built_in_names())
+      std::cout << fmt::format("{:<18} {}\n", name, machine::load(name).title);
+  });
+  CLI::App* one = machine->add_subcommand("show", "every parameter with value, unit, range and source");
+  const auto name = std::make_shared<std::string>();
+  one->add_option("NAME", *name, "name of a machine, or a TOML file")->required();
+  one->footer("Example: splatscope machine show geforce4-ti4400");
+  one->callback([name] { show(machine::load(*name)); });
+}
+
+}  // namespace splatscope::app
