@@ -109,7 +109,8 @@ TEST(Tokens, MutatedStreamsAreErrorsOrPrograms) {
       EXPECT_EQ(write_tokens(assemble(disassemble(program), "again")), written) << disassemble(program);
       // oFog and oPts are scalars: .x is written as the whole mask.
       const std::string text = disassemble(program);
-      const bool scalar_mask = text.find("oFog.x") != std::string::npos || text.find("oPts.x") != std::string::npos;
+      const bool scalar_mask =
+          text.find("oFog.x") != std::string::npos || text.find("oPts.x") != std::string::npos;
       EXPECT_TRUE(scalar_mask || written == tokens) << text;
       ++accepted;
       validate(program);

@@ -185,6 +185,7 @@ class VertexValidator {
         break;
       case RegisterFile::texcoord_out:
         texcoords_[destination.index] |= mask;
+        texcoord_writers_[destination.index] = &instruction;
         break;
       default:
         break;
@@ -199,9 +200,10 @@ class VertexValidator {
     for (std::size_t i = 0; i < texcoords_.size(); ++i) {
       const unsigned mask = texcoords_[i];
       if (mask != 0 && missing)
-        reject(program_, last, fmt::format("oT{} is written but not every oT# before it", i));
+        reject(program_, *texcoord_writers_[i],
+               fmt::format("oT{} is written but not every oT# before it", i));
       if (mask != 0 && (mask & (mask + 1)) != 0)
-        reject(program_, last,
+        reject(program_, *texcoord_writers_[i],
                fmt::format("the components of oT{} written in all must be .x .xy .xyz or .xyzw", i));
       missing = missing || mask == 0;
     }
@@ -213,6 +215,7 @@ class VertexValidator {
   WrittenComponents written_{};
   unsigned position_ = 0;
   std::array<unsigned, 8> texcoords_{};
+  std::array<const Instruction*, 8> texcoord_writers_{};  // the last of each
 };
 
 }  // namespace

@@ -2,60 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <cstring>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "model/error.h"
+#include "model/isa/opcode.h"
+#include "model/isa/pixel_limits.h"
+#include "model/pixel/registers.h"
 
 namespace splatscope::pixel {
 namespace {
-
-constexpr std::size_t kConstants = 8;
-constexpr std::size_t kTemporaries = 6;
-
-using Lanes = float[kBatch];
-struct alignas(64) Register {
-  Lanes component[4];
-};
-
-// Ranges of the registers (Direct3D 8.1 reference, "Registers - ps_1_X").
-struct Ranges {
-  float temporary;        // r# and, up to ps_1_3, t# as a destination: -temporary..temporary
-  float constant = 1.0f;  // c#: -1..1
-};
-
-Ranges ranges_of(isa::Version version) {
-  return {version.minor == 4 ? 8.0f : 1.0f};
-}
-
-// The registers of one batch while it runs.
-struct Registers {
-  Register temporaries[kTemporaries];
-  Register constants[kConstants];
-  Register inputs[2];
-  Register textures[4];
-};
-
-// Four components to read: of a register itself, or of a copy that a modifier made.
-struct Operand {
-  std::array<const float*, 4> component;
-};
-
-Register& register_of(Registers& registers, isa::RegisterFile file, std::size_t index) {
-  switch (file) {
-    case isa::RegisterFile::temporary:
-      return registers.temporaries[index];
-    case isa::RegisterFile::constant:
-      return registers.constants[index];
-    case isa::RegisterFile::input:
-      return registers.inputs[index];
-    case isa::RegisterFile::texture:
-      return registers.textures[index];
-    default:
-      throw ModelError("not a register of pixel programs");
-  }
-}
 
 // value*scale + offset: what each source modifier and negation come to.
 struct Affine {
@@ -84,20 +43,6 @@ Affine affine_of(const isa::Source& source) {
   return source.negate ? Affine{-result.scale, -result.offset} : result;
 }
 
-Operand read(const isa::Source& source, Registers& registers, Register& copy, int count) {
-  const Register& from = register_of(registers, source.file, source.index);
-  const bool plain = source.modifier == isa::SourceModifier::none && !source.negate;
-  const Affine affine = affine_of(source);
-  Operand operand;
-  for (std::size_t lane = 0; lane < 4; ++lane) {
-    const Lanes& values = from.component[source.swizzle[lane]];
-    operand.component[lane] = plain ? values : copy.component[lane];
-    if (!plain)
-      for (int i = 0; i < count; ++i) copy.component[lane][i] = values[i] * affine.scale + affine.offset;
-  }
-  return operand;
-}
-
 template <typename Function>
 void each(const isa::Instruction& instruction, Register& result, int count, Function function) {
   for (std::size_t component = 0; component < 4; ++component) {
@@ -108,8 +53,11 @@ void each(const isa::Instruction& instruction, Register& result, int count, Func
 }
 
 // The result before its modifiers, in the components of the mask.
-void compute(const isa::Instruction& instruction, const std::array<Operand, 3>& sources, bool select_by_alpha,
-             Register& result, int count) {
+void compute(const isa::Instruction& instruction, const std::array<Operand, 3>& sources,
+             const Context& context, Register& result) {
+  const int count = context.count;
+  const bool select_by_alpha = context.version.minor < 4;  // cnd
+  const auto& bump = context.bump[instruction.destination.index].matrix;
   const auto& a = sources[0].component;
   const auto& b = sources[1].component;
   const auto& c = sources[2].component;
@@ -144,24 +92,43 @@ void compute(const isa::Instruction& instruction, const std::array<Operand, 3>& 
     case isa::Opcode::cmp:
       return each(instruction, result, count,
                   [&](size_t k, size_t i) { return a[k][i] >= 0.0f ? b[k][i] : c[k][i]; });
+    case isa::Opcode::bem:
+      return each(instruction, result, count,
+                  [&](size_t k, size_t i) { return a[k][i] + bump[0][k] * b[0][i] + bump[1][k] * b[1][i]; });
     default:
       throw ModelError("not an arithmetic instruction of pixel programs");
   }
 }
 
-// Destination modifiers, then the range of the register.
-void commit(const isa::Instruction& instruction, float range, const Register& result, Registers& registers,
-            int count) {
+// The range of results, and whether they are rounded to steps of 1/255.
+struct ResultFormat {
+  float low, high;
+  bool steps;
+};
+
+ResultFormat result_format(isa::Version version, CombinerFormat format) {
+  const float range = version.minor == 4 ? 8.0f : 1.0f;
+  if (format == CombinerFormat::unbounded)
+    return {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(), false};
+  return {-range, range, format == CombinerFormat::signed9};
+}
+
+// Destination modifiers, then the range and the steps of the register.
+void commit(const isa::Instruction& instruction, ResultFormat format, const Register& result,
+            Registers& registers, int count) {
   const isa::Destination& destination = instruction.destination;
   Register& to = register_of(registers, destination.file, destination.index);
   const float scale = destination.shift >= 0 ? static_cast<float>(1 << destination.shift)
                                              : 1.0f / static_cast<float>(1 << -destination.shift);
-  const float low = destination.saturate ? 0.0f : -range;
-  const float high = destination.saturate ? 1.0f : range;
+  const float low = destination.saturate ? 0.0f : format.low;
+  const float high = destination.saturate ? 1.0f : format.high;
   for (std::size_t component = 0; component < 4; ++component) {
     if (!(destination.mask & (1u << component))) continue;
-    for (int i = 0; i < count; ++i)
-      to.component[component][i] = std::min(std::max(result.component[component][i] * scale, low), high);
+    const float* from = result.component[component];
+    float* out = to.component[component];
+    for (int i = 0; i < count; ++i) out[i] = std::min(std::max(from[i] * scale, low), high);
+    if (format.steps)
+      for (int i = 0; i < count; ++i) out[i] = std::nearbyint(out[i] * 255.0f) / 255.0f;
   }
 }
 
@@ -169,25 +136,129 @@ void clamp_lanes(const float* from, float low, float high, float* to, int count)
   for (int i = 0; i < count; ++i) to[i] = std::min(std::max(from[i], low), high);
 }
 
+bool is_texture(isa::Version version, isa::Opcode opcode) {
+  return isa::find_opcode(version, opcode)->unit == isa::OpcodeClass::texture;
+}
+
 }  // namespace
+
+Register& register_of(Registers& registers, isa::RegisterFile file, std::size_t index) {
+  switch (file) {
+    case isa::RegisterFile::temporary:
+      return registers.temporaries[index];
+    case isa::RegisterFile::constant:
+      return registers.constants[index];
+    case isa::RegisterFile::input:
+      return registers.inputs[index];
+    case isa::RegisterFile::texture:
+      return registers.textures[index];
+    default:
+      throw ModelError("not a register of pixel programs");
+  }
+}
+
+Operand read(const isa::Source& source, Registers& registers, Register& copy, int count) {
+  const Register& from = register_of(registers, source.file, source.index);
+  const bool plain = source.modifier == isa::SourceModifier::none && !source.negate;
+  const Affine affine = affine_of(source);
+  Operand operand;
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const Lanes& values = from.component[source.swizzle[lane]];
+    operand.component[lane] = plain ? values : copy.component[lane];
+    if (!plain)
+      for (int i = 0; i < count; ++i) copy.component[lane][i] = values[i] * affine.scale + affine.offset;
+  }
+  return operand;
+}
 
 struct PixelProgram::Decoded {
   isa::Version version;
-  std::vector<isa::Instruction> arithmetic;
-  std::vector<isa::Definition> definitions;
+  ResultFormat format{};
+  struct Step {
+    isa::Instruction instruction;
+    bool texture;
+  };
+  std::vector<Step> steps;
+  std::array<std::optional<Vec4>, isa::kPixelConstants> defined;
+  unsigned constants = 0, temporaries = 0, inputs = 0, textures = 0;  // used: bit n
   unsigned stages = 0;
+  bool writes_depth = false;
+  bool samples_ahead = true;
+
+  void append(const isa::Instruction& instruction);
+  void use(isa::RegisterFile file, std::size_t index);
+  void prepare(std::span<const Vec4> values, const FragmentBatch& batch, int count,
+               Registers& registers) const;
 };
 
-PixelProgram::PixelProgram(const isa::Program& program) : decoded_(std::make_unique<Decoded>()) {
-  decoded_->version = program.version;
-  decoded_->definitions = program.definitions;
-  for (const isa::Instruction& instruction : program.instructions) {
-    if (instruction.opcode == isa::Opcode::nop) continue;
-    if (instruction.opcode == isa::Opcode::tex)
-      decoded_->stages |= 1u << instruction.destination.index;
-    else
-      decoded_->arithmetic.push_back(instruction);
+void PixelProgram::Decoded::use(isa::RegisterFile file, std::size_t index) {
+  const unsigned bit = 1u << index;
+  switch (file) {
+    case isa::RegisterFile::temporary:
+      temporaries |= bit;
+      break;
+    case isa::RegisterFile::constant:
+      constants |= bit;
+      break;
+    case isa::RegisterFile::input:
+      inputs |= bit;
+      break;
+    default:
+      textures |= bit;
+      break;
   }
+}
+
+void PixelProgram::Decoded::append(const isa::Instruction& instruction) {
+  using enum isa::Opcode;
+  const bool texture = is_texture(version, instruction.opcode);
+  steps.push_back({instruction, texture});
+  use(instruction.destination.file, instruction.destination.index);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
+    use(instruction.sources[i].file, instruction.sources[i].index);
+  if (!texture) return;
+  writes_depth |= instruction.opcode == texdepth || instruction.opcode == texm3x2depth;
+  const bool none =
+      instruction.opcode == texkill || instruction.opcode == texdepth || instruction.opcode == texcoord ||
+      instruction.opcode == texcrd || instruction.opcode == texm3x2pad || instruction.opcode == texm3x3pad ||
+      instruction.opcode == texm3x3 || instruction.opcode == texdp3 || instruction.opcode == texm3x2depth;
+  if (!none) stages |= 1u << instruction.destination.index;
+  const isa::Source own{isa::RegisterFile::texture, instruction.destination.index};
+  samples_ahead &= instruction.opcode == tex || instruction.opcode == texcoord ||
+                   (instruction.opcode == texld && instruction.sources[0] == own);
+}
+
+void PixelProgram::Decoded::prepare(std::span<const Vec4> values, const FragmentBatch& batch, int count,
+                                    Registers& registers) const {
+  for (std::size_t component = 0; component < 4; ++component) {
+    for (std::size_t i = 0; i < defined.size(); ++i) {
+      if (!(constants & (1u << i))) continue;
+      const Vec4 value = defined[i] ? *defined[i] : i < values.size() ? values[i] : Vec4{};
+      std::fill_n(registers.constants[i].component[component], count,
+                  std::clamp(value[component], -1.0f, 1.0f));
+    }
+    if (inputs & 1u)
+      clamp_lanes(batch.v0[component], 0.0f, 1.0f, registers.inputs[0].component[component], count);
+    if (inputs & 2u)
+      clamp_lanes(batch.v1[component], 0.0f, 1.0f, registers.inputs[1].component[component], count);
+    for (std::size_t i = 0; i < kStages; ++i) {
+      if (temporaries & (1u << i)) std::fill_n(registers.temporaries[i].component[component], count, 0.0f);
+      if (textures & (1u << i))
+        std::copy_n(batch.t[i][component], count, registers.textures[i].component[component]);
+    }
+  }
+}
+
+PixelProgram::PixelProgram(const isa::Program& program, CombinerFormat format)
+    : decoded_(std::make_unique<Decoded>()) {
+  decoded_->version = program.version;
+  decoded_->format = result_format(program.version, format);
+  decoded_->temporaries = 1;  // r0 is the result
+  for (const isa::Definition& definition : program.definitions)
+    decoded_->defined.at(definition.index) = definition.values;
+  for (const isa::Instruction& instruction : program.instructions)
+    if (instruction.opcode != isa::Opcode::nop && instruction.opcode != isa::Opcode::phase)
+      decoded_->append(instruction);
 }
 
 PixelProgram::~PixelProgram() = default;
@@ -197,39 +268,46 @@ PixelProgram& PixelProgram::operator=(PixelProgram&&) noexcept = default;
 unsigned PixelProgram::texture_stages() const {
   return decoded_->stages;
 }
+bool PixelProgram::writes_depth() const {
+  return decoded_->writes_depth;
+}
+bool PixelProgram::samples_ahead() const {
+  return decoded_->samples_ahead;
+}
 
 void PixelProgram::run(std::span<const Vec4> constants, FragmentBatch& batch, int count) const {
-  const Ranges ranges = ranges_of(decoded_->version);
+  if (!samples_ahead()) throw ModelError("this pixel program samples as it runs: it needs a sampler");
+  const Sampler sampled_ahead = [&](int stage, const Lanes*, Lanes* texel, int lanes) {
+    for (std::size_t component = 0; component < 4; ++component)
+      std::copy_n(batch.t[stage][component], lanes, texel[component]);
+  };
+  run(constants, batch, count, sampled_ahead);
+}
+
+void PixelProgram::run(std::span<const Vec4> constants, FragmentBatch& batch, int count,
+                       const Sampler& sampler, const BumpStages& bump) const {
   Registers registers;
-  std::array<Vec4, kConstants> values{};
-  std::copy_n(constants.begin(), std::min(constants.size(), kConstants), values.begin());
-  for (const isa::Definition& definition : decoded_->definitions)
-    values[definition.index] = definition.values;
-  for (std::size_t component = 0; component < 4; ++component) {
-    for (std::size_t i = 0; i < kConstants; ++i)
-      std::fill_n(registers.constants[i].component[component], count,
-                  std::clamp(values[i][component], -ranges.constant, ranges.constant));
-    clamp_lanes(batch.v0[component], 0.0f, 1.0f, registers.inputs[0].component[component], count);
-    clamp_lanes(batch.v1[component], 0.0f, 1.0f, registers.inputs[1].component[component], count);
-    for (std::size_t stage = 0; stage < 4; ++stage)
-      std::copy_n(batch.t[stage][component], count, registers.textures[stage].component[component]);
-    for (Register& temporary : registers.temporaries)
-      std::fill_n(temporary.component[component], count, 0.0f);
-  }
+  decoded_->prepare(constants, batch, count, registers);
+  batch.killed = 0;
+  const Context context{decoded_->version, batch, count, sampler, bump};
   Register copies[3], results[2];
-  const auto& program = decoded_->arithmetic;
-  for (std::size_t at = 0; at < program.size();) {
+  const auto& steps = decoded_->steps;
+  for (std::size_t at = 0; at < steps.size();) {
+    if (steps[at].texture) {
+      run_texture_instruction(steps[at++].instruction, registers, context);
+      continue;
+    }
     // Both halves of a co-issued pair read before either writes.
-    const std::size_t issued = at + 1 < program.size() && program[at + 1].coissue ? 2 : 1;
+    const std::size_t issued = at + 1 < steps.size() && steps[at + 1].instruction.coissue ? 2 : 1;
     for (std::size_t k = 0; k < issued; ++k) {
-      const isa::Instruction& instruction = program[at + k];
+      const isa::Instruction& instruction = steps[at + k].instruction;
       std::array<Operand, 3> sources{};
       for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
         sources[i] = read(instruction.sources[i], registers, copies[i], count);
-      compute(instruction, sources, decoded_->version.minor < 4, results[k], count);
+      compute(instruction, sources, context, results[k]);
     }
     for (std::size_t k = 0; k < issued; ++k)
-      commit(program[at + k], ranges.temporary, results[k], registers, count);
+      commit(steps[at + k].instruction, decoded_->format, results[k], registers, count);
     at += issued;
   }
   for (std::size_t component = 0; component < 4; ++component)

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -10,26 +13,55 @@
 namespace splatscope::pixel {
 
 inline constexpr int kBatch = 64;  // fragments executed together
+inline constexpr int kStages = 6;  // texture stages and coordinate sets: 4 up to ps_1_3
+
+using Lanes = float[kBatch];
 
 // Registers of a batch of fragments, structure of arrays: [component r g b a][fragment].
 struct FragmentBatch {
-  alignas(64) float v0[4][kBatch];    // interpolated diffuse, in [0, 1]
-  alignas(64) float v1[4][kBatch];    // interpolated specular
-  alignas(64) float t[4][4][kBatch];  // texture coordinates in; where `sampled`, the texel of that stage
-  alignas(64) float r0[4][kBatch];    // result
+  alignas(64) float v0[4][kBatch];          // interpolated diffuse, in [0, 1]
+  alignas(64) float v1[4][kBatch];          // interpolated specular
+  alignas(64) float t[kStages][4][kBatch];  // texture coordinates
+  alignas(64) float r0[4][kBatch];          // result
+  alignas(64) float depth[kBatch];          // result of texdepth and texm3x2depth, where writes_depth()
+  std::uint64_t killed = 0;                 // result: bit i where texkill cancelled fragment i
 };
 
-// A ps_1_x program made ready to run. Without `tex` instructions' own sampling: the caller samples stage n at
-// the coordinates t[n] for every stage in texture_stages() before run() and stores the texel in t[n].
+// Samples the texture of a stage at coordinates u v w (u, v for a 2D one) of fragments 0..count-1.
+using Sampler = std::function<void(int stage, const Lanes* coordinates, Lanes* texel, int count)>;
+
+// Texture-stage state of the bump instructions (D3DTSS_BUMPENVMAT, BUMPENVLSCALE, BUMPENVLOFFSET).
+struct BumpStage {
+  float matrix[2][2] = {{0, 0}, {0, 0}};
+  float luminance_scale = 0;
+  float luminance_offset = 0;
+};
+using BumpStages = std::array<BumpStage, kStages>;
+
+// A ps_1_1 to ps_1_4 program made ready to run. Registers keep to their ranges: c# in [-1, 1], v# in [0, 1],
+// results of arithmetic in [-1, 1] up to ps_1_3 and [-8, 8] in ps_1_4 (Direct3D 8.1 reference, "Registers -
+// ps_1_X").
 class PixelProgram {
  public:
-  explicit PixelProgram(const isa::Program& program);
+  explicit PixelProgram(const isa::Program& program, CombinerFormat format = CombinerFormat::float32);
   ~PixelProgram();
   PixelProgram(PixelProgram&&) noexcept;
   PixelProgram& operator=(PixelProgram&&) noexcept;
 
-  unsigned texture_stages() const;  // bit n: stage n is sampled (`tex tn`)
+  unsigned texture_stages() const;  // bit n: stage n is sampled
+  bool writes_depth() const;
+
+  // Whether every stage is sampled at its own coordinates, which nothing else reads, and the program kills no
+  // fragment and writes no depth. Then textures can be sampled ahead.
+  bool samples_ahead() const;
+
+  // Where samples_ahead(): the caller has replaced t[n] by the texel of stage n for every stage in
+  // texture_stages().
   void run(std::span<const Vec4> constants, FragmentBatch& batch, int count) const;
+
+  // Any program, which samples as it runs.
+  void run(std::span<const Vec4> constants, FragmentBatch& batch, int count, const Sampler& sampler,
+           const BumpStages& bump = {}) const;
 
  private:
   struct Decoded;
