@@ -84,10 +84,14 @@ class Checker {
     try {
       const isa::Program program = isa::load(text.text, text.name);
       const bool is_pixel = program.version.kind == isa::ShaderKind::pixel;
-      return {program.version.kind, is_pixel ? pixel::PixelProgram(program).texture_stages() : 0};
+      if (!is_pixel) return {program.version.kind, 0};
+      const pixel::PixelProgram pixel(program);
+      if (pixel.samples_ahead()) return {program.version.kind, pixel.texture_stages()};
     } catch (const UserError& error) {
       fail(error.what(), "a program that loads");
     }
+    fail("the pixel program reads coordinates besides sampling, kills fragments or writes depth",
+         "one that samples stages at their own coordinates alone");
   }
 
   const Loaded& program(std::string_view what, std::uint32_t index, isa::ShaderKind kind) const {
