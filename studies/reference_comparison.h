@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/reference/ewa_reference.h"
+#include "model/output/frame.h"
+#include "traces/scene.h"
+
+// A simulated picture against the double-precision reference of the same scene.
+namespace splatscope::studies {
+
+// The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel. `cutoff_tolerance` as
+// in ReferenceSettings.
+kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance);
+
+// Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the summed weights
+// are at least half of what they are in its inside. Splats reach further, but there is no surface there, and only the
+// normalisation per pixel makes it look as if there were.
+double psnr(const Frame& frame, const kernels::ReferencePicture& reference);
+
+struct Agreement {
+  std::size_t pixels = 0;     // certainly covered by the surface
+  std::size_t with_ties = 0;  // of these: at least one splat may count or not
+  std::size_t outside = 0;    // of these: further than 0.5/255 from the reference's bounds
+  double worst = 0;           // distance from the bounds, in 1/255
+};
+
+// How far the picture is from what the reference allows, given either way for splats whose edge passes within the
+// reference's tolerance of a pixel's centre.
+Agreement agreement(const Frame& frame, const kernels::ReferencePicture& reference);
+
+}  // namespace splatscope::studies
