@@ -22,7 +22,7 @@ double median_weight(const kernels::ReferencePicture& reference) {
 
 }  // namespace
 
-kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance) {
+kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance, double edge_tolerance) {
   std::vector<kernels::Surfel> surfels;
   surfels.reserve(scene.surfels.size());
   for (const traces::Surfel& surfel : scene.surfels) {
@@ -34,7 +34,8 @@ kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cut
       .prefilter = true,
       .cutoff = scene.splatting.cutoff,
       .shape = scene.splatting.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square,
-      .cutoff_tolerance = cutoff_tolerance};
+      .cutoff_tolerance = cutoff_tolerance,
+      .edge_tolerance = edge_tolerance};
   return kernels::ewa_reference(traces::view_of(scene.camera, scene.frame), surfels, settings);
 }
 
@@ -54,10 +55,12 @@ double psnr(const Frame& frame, const kernels::ReferencePicture& reference) {
   return -10 * std::log10(squares / static_cast<double>(samples));
 }
 
-Agreement agreement(const Frame& frame, const kernels::ReferencePicture& reference) {
-  Agreement out;
+SurfaceAgreement agreement(const Frame& frame, const kernels::ReferencePicture& reference) {
+  const double half = 0.5 * median_weight(reference);
+  SurfaceAgreement both;
   for (std::size_t pixel = 0; pixel < reference.coverage.size(); ++pixel) {
     if (reference.coverage[pixel] != kernels::Coverage::certain) continue;
+    Agreement& out = reference.sums[pixel].w < half ? both.fringe : both.surface;
     ++out.pixels;
     out.with_ties += reference.lowest[pixel] != reference.highest[pixel];
     const Vec4 color = frame.color(pixel);
@@ -70,7 +73,7 @@ Agreement agreement(const Frame& frame, const kernels::ReferencePicture& referen
     out.outside += distance > 0.5;
     out.worst = std::max(out.worst, distance);
   }
-  return out;
+  return both;
 }
 
 }  // namespace splatscope::studies

@@ -9,9 +9,10 @@
 // A simulated picture against the double-precision reference of the same scene.
 namespace splatscope::studies {
 
-// The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel. `cutoff_tolerance` as
-// in ReferenceSettings.
-kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance);
+// The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel. The
+// tolerances as in ReferenceSettings.
+kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance = 0,
+                                           double edge_tolerance = 0);
 
 // Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the summed weights
 // are at least half of what they are in its inside. Splats reach further, but there is no surface there, and only the
@@ -19,14 +20,18 @@ kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cut
 double psnr(const Frame& frame, const kernels::ReferencePicture& reference);
 
 struct Agreement {
-  std::size_t pixels = 0;     // certainly covered by the surface
+  std::size_t pixels = 0;     // with splats that certainly count
   std::size_t with_ties = 0;  // of these: at least one splat may count or not
   std::size_t outside = 0;    // of these: further than 0.5/255 from the reference's bounds
   double worst = 0;           // distance from the bounds, in 1/255
 };
 
 // How far the picture is from what the reference allows, given either way for splats whose edge passes within the
-// reference's tolerance of a pixel's centre.
-Agreement agreement(const Frame& frame, const kernels::ReferencePicture& reference);
+// reference's tolerance of a pixel's centre: on the surface (as for psnr), and on the fringe of splats beyond it, where
+// so few overlap that the rounding of the 8-bit texture shows.
+struct SurfaceAgreement {
+  Agreement surface, fringe;
+};
+SurfaceAgreement agreement(const Frame& frame, const kernels::ReferencePicture& reference);
 
 }  // namespace splatscope::studies

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -62,7 +63,8 @@ struct RayFunction {
 class Accumulator {
  public:
   Accumulator(const View& view, const ReferenceSettings& settings)
-      : view_(view), settings_(settings), radius_(std::sqrt(2.0 * settings.cutoff)) {
+      : view_(view), settings_(settings), radius_(std::sqrt(2.0 * settings.cutoff)),
+        reach_(radius_ + std::max(settings.cutoff_tolerance, settings.edge_tolerance)) {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     picture_.width = view.width;
     picture_.height = view.height;
@@ -87,8 +89,7 @@ class Accumulator {
     const RayFunction numerator0(view_, glm::cross(b, o));
     const RayFunction numerator1(view_, glm::cross(o, a));
     const double plane = glm::dot(o, normal);
-    const double reach = radius_ + settings_.cutoff_tolerance;
-    const PixelBox box = bounding_box(view_, o, reach * a, reach * b);
+    const PixelBox box = bounding_box(view_, o, reach_ * a, reach_ * b);
     const double height = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter->determinant);
     for (int row = box.top; row < box.bottom; ++row) {
       for (int column = box.left; column < box.right; ++column) {
@@ -106,25 +107,31 @@ class Accumulator {
 
  private:
   void add_at(int row, int column, const glm::dvec2& y, double height, const glm::dvec3& color) {
-    const double distance = settings_.shape == CutoffShape::circle
-                                ? glm::length(y) - radius_
-                                : std::max(std::abs(y.x), std::abs(y.y)) - radius_;
-    if (distance > settings_.cutoff_tolerance) return;
+    const double to_edge = std::max(std::abs(y.x), std::abs(y.y)) - radius_;
+    const bool circle = settings_.shape == CutoffShape::circle;
+    // Beyond the edge a texture gives its last texel, which lies inside the circle where they touch.
+    const double to_cutoff = circle ? glm::length(glm::clamp(y, -radius_, radius_)) - radius_ : to_edge;
+    const double cutoff_tolerance = circle ? settings_.cutoff_tolerance : reach_ - radius_;
+    const double edge_tolerance = circle ? settings_.edge_tolerance : reach_ - radius_;
+    if (to_cutoff > cutoff_tolerance || to_edge > edge_tolerance) return;
+    const bool inside = to_cutoff <= 0 && to_edge <= 0;
+    const bool tie = std::abs(to_cutoff) < cutoff_tolerance || std::abs(to_edge) < edge_tolerance;
     const double weight = height * std::exp(-0.5 * glm::dot(y, y));
     const std::size_t pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(view_.width) +
                               static_cast<std::size_t>(column);
     const glm::dvec4 term(weight * color, weight);
-    if (distance <= 0) picture_.sums[pixel] += term;
-    if (std::abs(distance) < settings_.cutoff_tolerance) {
+    if (inside) picture_.sums[pixel] += term;
+    if (tie) {
       ties_.push_back({pixel, weight, color});
-    } else if (distance <= 0) {
+    } else if (inside) {
       certain_[pixel] += term;
     }
   }
 
   const View& view_;
   const ReferenceSettings& settings_;
-  const double radius_;
+  const double radius_;  // of the cutoff, in y
+  const double reach_;   // with the tolerance
   ReferencePicture picture_;
   std::vector<glm::dvec4> certain_;  // the sums without the ties
   std::vector<Tie> ties_;
