@@ -1,0 +1,184 @@
+#include "studies/run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "model/error.h"
+#include "model/isa/program.h"
+#include "traces/output_files.h"
+#include "traces/trace_file.h"
+
+namespace splatscope::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {
+    {"functional", Fidelity::functional}, {"cycle", Fidelity::cycle}, {"referee", Fidelity::referee}};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Part of a longer progress.
+Progress part(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [=](double fraction) { progress(from + fraction * (to - from)); };
+}
+
+Json frame_json(const sim::Result& timing) {
+  return {{"cycles", timing.cycles},
+          {"milliseconds", 1000 * timing.seconds},
+          {"frames_per_second", timing.frames_per_second()},
+          {"event_hash", fmt::format("{:016x}", timing.event_hash)}};
+}
+
+Json units_json(const sim::Result& timing) {
+  Json units = Json::array();
+  for (const sim::UnitBooks& books : timing.units) {
+    Json blocked_by = Json::object();
+    for (const auto& [who, cycles] : books.blocked_by) blocked_by[who] = cycles;
+    units.push_back({{"name", books.name},
+                     {"busy", books.busy},
+                     {"starved", books.starved},
+                     {"blocked", books.blocked},
+                     {"idle", books.idle},
+                     {"blocked_by", blocked_by}});
+  }
+  return units;
+}
+
+Json counters_json(const RenderCounters& c) {
+  return {{"vertices", c.vertices},
+          {"triangles", c.triangles},
+          {"triangles_without_coverage", c.triangles_without_coverage},
+          {"triangles_outside_frustum", c.triangles_outside},
+          {"triangles_behind_near", c.triangles_behind},
+          {"triangles_not_finite", c.triangles_not_finite},
+          {"triangles_clipped", c.triangles_clipped},
+          {"quads", c.quads},
+          {"fragments", c.fragments},
+          {"fragments_passed", c.fragments_passed}};
+}
+
+Json statistics_json(const sim::Result& timing) {
+  Json out = Json::array();
+  for (const sim::UnitStatistic& s : timing.statistics) {
+    out.push_back({{"of", s.unit_name}, {"name", s.name}, {"value", s.value}, {"unit", s.unit}, {"what", s.what}});
+  }
+  return out;
+}
+
+Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped) {
+  return {{"drawn", recorded.surfels},
+          {"weights_captured", recorded.weights_captured},
+          {"weights_by_default", recorded.weights_by_default},
+          {"skipped",
+           {{"not_finite", skipped.not_finite},
+            {"zero_radius", skipped.zero_radius},
+            {"zero_normal", skipped.zero_normal}}}};
+}
+
+}  // namespace
+
+Fidelity fidelity_by_name(std::string_view name) {
+  for (const auto& [known, fidelity] : kFidelities) {
+    if (known == name) return fidelity;
+  }
+  throw UserError("--fidelity", 0, fmt::format("unknown fidelity \"{}\", expected functional, cycle or referee", name));
+}
+
+std::string_view name(Fidelity fidelity) {
+  for (const auto& [known, value] : kFidelities) {
+    if (value == fidelity) return known;
+  }
+  throw ModelError("a fidelity without a name");
+}
+
+Input load_input(const std::string& scene_or_trace, const Machine& machine, const Progress& progress) {
+  if (std::filesystem::path(scene_or_trace).extension() == ".trace") {
+    return {scene_or_trace, traces::read_trace(scene_or_trace), {}, {}};
+  }
+  const traces::Scene scene = traces::load_scene(scene_or_trace);
+  traces::Recording recording = traces::record(scene, machine.numbers, progress);
+  return {scene.name, std::move(recording.trace), recording.counts, scene.skipped};
+}
+
+FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  RenderOptions options;
+  options.formats = machine.numbers;
+  options.vertex_cache_entries = machine.vertex.cache_entries;
+  options.record_work = fidelity != Fidelity::functional;
+  constexpr double kFunctionShare = 0.2;  // of the time of a run with timing, about
+  FrameRun run{render(trace, options, part(progress, 0, options.record_work ? kFunctionShare : 1)), {}, 0, 0};
+  if (options.record_work) {
+    const auto timing_start = std::chrono::steady_clock::now();
+    const auto scheduler = fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
+    run.timing = sim::simulate(trace, run.rendered.work, machine, scheduler, part(progress, kFunctionShare, 1));
+    run.timing_seconds = seconds_since(timing_start);
+    run.rendered.work = {};
+  }
+  run.host_seconds = seconds_since(start);
+  return run;
+}
+
+Image picture_of(const Frame& frame) {
+  Image image(static_cast<int>(frame.width), static_cast<int>(frame.height));
+  for (std::size_t pixel = 0; pixel < image.pixels.size(); ++pixel) {
+    image.pixels[pixel] = frame.color(pixel);
+    image.pixels[pixel][3] = 1;
+  }
+  return image;
+}
+
+GrayImage depth_of(const Frame& frame) {
+  GrayImage image{static_cast<int>(frame.width), static_cast<int>(frame.height), {}};
+  image.pixels.resize(frame.depth.size());
+  for (std::size_t pixel = 0; pixel < image.pixels.size(); ++pixel) {
+    image.pixels[pixel] = static_cast<float>(frame.depth_value(pixel));
+  }
+  return image;
+}
+
+nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
+                                  const FrameRun& run) {
+  Json results;
+  results["input"] = input.name;
+  results["machine"] = machine.name;
+  results["fidelity"] = name(fidelity);
+  results["frames"] = Json::array();
+  if (run.timing) results["frames"].push_back(frame_json(*run.timing));
+  results["programs"] = Json::array();
+  for (const ShaderText& program : input.trace.programs) {
+    results["programs"].push_back(
+        {{"name", program.name}, {"slots", isa::slot_count(isa::load(program.text, program.name))}});
+  }
+  results["units"] = run.timing ? units_json(*run.timing) : Json::array();
+  results["units_left_out"] = Json::array();
+  if (run.timing) {
+    for (const sim::UnitLeftOut& unit : run.timing->units_left_out) {
+      results["units_left_out"].push_back({{"name", unit.name}, {"why", unit.why}});
+    }
+  }
+  results["counters"] = counters_json(run.rendered.counters);
+  if (run.timing) results["statistics"] = statistics_json(*run.timing);
+  if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);
+  results["host"] = {{"seconds", run.host_seconds}};
+  if (run.timing) {
+    results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.timing_seconds;
+  }
+  return results;
+}
+
+void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
+               const std::filesystem::path& folder) {
+  const Image picture = picture_of(run.rendered.frame);
+  write_exr(picture, folder / "frame.exr");
+  write_png(picture, folder / "frame.png");
+  write_exr(depth_of(run.rendered.frame), folder / "depth.exr");
+  traces::write_file(folder / "results.json", results_of(input, machine, fidelity, run).dump(1) + "\n");
+}
+
+}  // namespace splatscope::studies

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "model/machine/machine.h"
+#include "model/render.h"
+#include "sim/simulate.h"
+#include "studies/image_io.h"
+#include "traces/recorder.h"
+
+// One frame of a scene or a trace on one machine.
+namespace splatscope::studies {
+
+enum class Fidelity { functional, cycle, referee };
+
+// "functional", "cycle", "referee". Throws UserError (file "--fidelity") for another name.
+Fidelity fidelity_by_name(std::string_view name);
+std::string_view name(Fidelity fidelity);
+
+using Progress = std::function<void(double)>;  // told the fraction done, from 0 to 1
+
+// What is run: a trace, and what the host knows about it where it was recorded from a scene.
+struct Input {
+  std::string name;
+  Trace trace;
+  std::optional<traces::RecordCounts> recorded;
+  traces::SkipCounts skipped;
+};
+
+// A trace file (".trace"), a scene file, or a ready scene by its name; a scene is recorded for `machine`, whose number
+// formats the captured weights depend on.
+Input load_input(const std::string& scene_or_trace, const Machine& machine, const Progress& progress = {});
+
+struct FrameRun {
+  Rendered rendered;
+  std::optional<sim::Result> timing;  // absent: functional
+  double host_seconds = 0;            // function and timing
+  double timing_seconds = 0;          // of these, for the timing
+};
+
+// The records of work are dropped once they are simulated.
+FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress = {});
+
+// The picture with its alpha set to 1, and the depths.
+Image picture_of(const Frame& frame);
+GrayImage depth_of(const Frame& frame);
+
+// The figures of a run, as the documentation of result files lists them.
+nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run);
+
+// Writes frame.exr, frame.png, depth.exr and results.json into `folder`, which exists.
+void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
+               const std::filesystem::path& folder);
+
+}  // namespace splatscope::studies

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/run.h"
+
+// Table 1 of Ren, Pfister, Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines.
+namespace splatscope::studies {
+
+struct Table1Row {
+  std::string algorithm;  // "no-ewa", "ewa-per-pixel", "ewa-per-surfel"
+  std::string machine;
+  int visibility_slots = 0;  // counted from the programs of the trace that ran
+  int splat_slots = 0;
+  double published_fps = 0;
+  double simulated_fps = 0;
+  bool fitted = false;      // a parameter of the machine was fitted to this very figure
+  std::string fitted_by;    // that parameter
+  std::string bottleneck;   // the unit that was busy for the largest share of the frame
+  double bottleneck_share = 0;
+  double cycles_per_host_second = 0;
+  double psnr = 0;          // against the double-precision EWA reference, dB
+
+  double error() const { return simulated_fps / published_fps - 1; }
+};
+
+struct Table1Picture {
+  std::string algorithm;
+  Image image;
+};
+
+struct Table1 {
+  std::vector<Table1Row> rows;          // algorithm by algorithm, the Radeon first, as printed
+  std::vector<Table1Picture> pictures;  // Fig. 11 a, b, c, on the GeForce4
+};
+
+// Runs the six frames on `machines` (the two of the paper) at cycle fidelity.
+Table1 reproduce_table1(const Progress& progress = {});
+
+// As the terminal shows it.
+std::string text_of(const Table1& table);
+
+}  // namespace splatscope::studies
