@@ -145,8 +145,8 @@ TEST(Scene, WrongTomlIsTheUsersErrorWithItsLine) {
 
 TEST(Scene, ReadyScenesAreTheThreeAlgorithms) {
   EXPECT_EQ(load_scene("checkerboard-no-ewa").splatting.algorithm, Algorithm::no_ewa);
-  EXPECT_EQ(load_scene("checkerboard-per-pixel").splatting.algorithm, Algorithm::ewa_per_pixel);
-  EXPECT_EQ(load_scene("checkerboard-per-surfel.toml").splatting.algorithm, Algorithm::ewa_per_surfel);
+  EXPECT_EQ(load_scene("checkerboard-ewa-per-pixel").splatting.algorithm, Algorithm::ewa_per_pixel);
+  EXPECT_EQ(load_scene("checkerboard-ewa-per-surfel.toml").splatting.algorithm, Algorithm::ewa_per_surfel);
   EXPECT_THROW(load_scene("checkerboard-no-such"), UserError);
 }
 
