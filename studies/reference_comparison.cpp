@@ -22,13 +22,14 @@ double median_weight(const kernels::ReferencePicture& reference) {
 
 }  // namespace
 
-kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance, double edge_tolerance) {
+kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance,
+                                          double edge_tolerance) {
   std::vector<kernels::Surfel> surfels;
   surfels.reserve(scene.surfels.size());
   for (const traces::Surfel& surfel : scene.surfels) {
     const auto [s, t] = traces::tangents(surfel);
-    surfels.push_back(
-        {glm::dvec3(surfel.position), s, t, scene.splatting.sigma, scene.splatting.gamma, glm::dvec3(surfel.color)});
+    surfels.push_back({glm::dvec3(surfel.position), s, t, scene.splatting.sigma, scene.splatting.gamma,
+                       glm::dvec3(surfel.color)});
   }
   const kernels::ReferenceSettings settings{
       .prefilter = true,
@@ -47,8 +48,8 @@ double psnr(const Frame& frame, const kernels::ReferencePicture& reference) {
     if (reference.sums[pixel].w < half) continue;
     const Vec4 color = frame.color(pixel);
     for (int c = 0; c < 3; ++c, ++samples) {
-      const double difference = std::clamp(double{color[static_cast<std::size_t>(c)]}, 0.0, 1.0) -
-                                reference.normalized[pixel][c];
+      const double difference =
+          std::clamp(double{color[static_cast<std::size_t>(c)]}, 0.0, 1.0) - reference.normalized[pixel][c];
       squares += difference * difference;
     }
   }

@@ -12,11 +12,11 @@ namespace splatscope::studies {
 // The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel. The
 // tolerances as in ReferenceSettings.
 kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance = 0,
-                                           double edge_tolerance = 0);
+                                          double edge_tolerance = 0);
 
-// Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the summed weights
-// are at least half of what they are in its inside. Splats reach further, but there is no surface there, and only the
-// normalisation per pixel makes it look as if there were.
+// Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the
+// summed weights are at least half of what they are in its inside. Splats reach further, but there is no
+// surface there, and only the normalisation per pixel makes it look as if there were.
 double psnr(const Frame& frame, const kernels::ReferencePicture& reference);
 
 struct Agreement {
@@ -26,9 +26,9 @@ struct Agreement {
   double worst = 0;           // distance from the bounds, in 1/255
 };
 
-// How far the picture is from what the reference allows, given either way for splats whose edge passes within the
-// reference's tolerance of a pixel's centre: on the surface (as for psnr), and on the fringe of splats beyond it, where
-// so few overlap that the rounding of the 8-bit texture shows.
+// How far the picture is from what the reference allows, given either way for splats whose edge passes within
+// the reference's tolerance of a pixel's centre: on the surface (as for psnr), and on the fringe of splats
+// beyond it, where so few overlap that the rounding of the 8-bit texture shows.
 struct SurfaceAgreement {
   Agreement surface, fringe;
 };

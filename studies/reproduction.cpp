@@ -47,22 +47,26 @@ void add_to(Report& report, const Table1& table) {
                     fmt::format("{} ({:.0f} % busy)", row.bottleneck, 100 * row.bottleneck_share),
                     fmt::format("{:.1f}", row.psnr)});
   }
-  report.table("64k-surfel checkerboard plane. VS1, VS2: instruction slots of the two passes, counted from the programs "
-               "that ran. A row is fitted where a parameter of the machine was fitted to that very figure, else predicted.",
-               {{"algorithm"},
-                {"machine"},
-                {"VS1", number},
-                {"VS2", number},
-                {"published fps", number},
-                {"simulated fps", number},
-                {"error", number},
-                {"role"},
-                {"bottleneck"},
-                {"PSNR, dB", number}},
-               rows);
-  report.paragraph("PSNR is against the double-precision sums of Eq. 8, normalised per pixel, over the pixels that the "
-                   "plane covers. The paper gives neither the camera nor the size of the squares: both are a "
-                   "reconstruction, as are the programs, of which it prints no listing.");
+  report.table(
+      "64k-surfel checkerboard plane. VS1, VS2: instruction slots of the two passes, counted from the "
+      "programs "
+      "that ran. A row is fitted where a parameter of the machine was fitted to that very figure, else "
+      "predicted.",
+      {{"algorithm"},
+       {"machine"},
+       {"VS1", number},
+       {"VS2", number},
+       {"published fps", number},
+       {"simulated fps", number},
+       {"error", number},
+       {"role"},
+       {"bottleneck"},
+       {"PSNR, dB", number}},
+      rows);
+  report.paragraph(
+      "PSNR is against the double-precision sums of Eq. 8, normalised per pixel, over the pixels that the "
+      "plane covers. The paper gives neither the camera nor the size of the squares: both are a "
+      "reconstruction, as are the programs, of which it prints no listing.");
   report.heading("Fig. 11: the three algorithms");
   const std::string_view captions[] = {"a) without EWA filtering", "b) EWA, normalised per pixel",
                                        "c) EWA, normalised per surfel"};
@@ -75,9 +79,12 @@ void add_to(Report& report, const Table1& table) {
 
 }  // namespace
 
-std::vector<std::string_view> reproduction_names() { return {"table1"}; }
+std::vector<std::string_view> reproduction_names() {
+  return {"table1"};
+}
 
-void reproduce(const std::vector<std::string>& names, const std::filesystem::path& folder, const Progress& progress) {
+void reproduce(const std::vector<std::string>& names, const std::filesystem::path& folder,
+               const Progress& progress) {
   const std::vector<std::string_view> known = reproduction_names();
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) == known.end()) {

@@ -65,7 +65,8 @@ Json counters_json(const RenderCounters& c) {
 Json statistics_json(const sim::Result& timing) {
   Json out = Json::array();
   for (const sim::UnitStatistic& s : timing.statistics) {
-    out.push_back({{"of", s.unit_name}, {"name", s.name}, {"value", s.value}, {"unit", s.unit}, {"what", s.what}});
+    out.push_back(
+        {{"of", s.unit_name}, {"name", s.name}, {"value", s.value}, {"unit", s.unit}, {"what", s.what}});
   }
   return out;
 }
@@ -86,7 +87,8 @@ Fidelity fidelity_by_name(std::string_view name) {
   for (const auto& [known, fidelity] : kFidelities) {
     if (known == name) return fidelity;
   }
-  throw UserError("--fidelity", 0, fmt::format("unknown fidelity \"{}\", expected functional, cycle or referee", name));
+  throw UserError("--fidelity", 0,
+                  fmt::format("unknown fidelity \"{}\", expected functional, cycle or referee", name));
 }
 
 std::string_view name(Fidelity fidelity) {
@@ -115,8 +117,10 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   FrameRun run{render(trace, options, part(progress, 0, options.record_work ? kFunctionShare : 1)), {}, 0, 0};
   if (options.record_work) {
     const auto timing_start = std::chrono::steady_clock::now();
-    const auto scheduler = fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
-    run.timing = sim::simulate(trace, run.rendered.work, machine, scheduler, part(progress, kFunctionShare, 1));
+    const auto scheduler =
+        fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
+    run.timing =
+        sim::simulate(trace, run.rendered.work, machine, scheduler, part(progress, kFunctionShare, 1));
     run.timing_seconds = seconds_since(timing_start);
     run.rendered.work = {};
   }

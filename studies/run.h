@@ -31,8 +31,8 @@ struct Input {
   traces::SkipCounts skipped;
 };
 
-// A trace file (".trace"), a scene file, or a ready scene by its name; a scene is recorded for `machine`, whose number
-// formats the captured weights depend on.
+// A trace file (".trace"), a scene file, or a ready scene by its name; a scene is recorded for `machine`,
+// whose number formats the captured weights depend on.
 Input load_input(const std::string& scene_or_trace, const Machine& machine, const Progress& progress = {});
 
 struct FrameRun {
@@ -43,14 +43,16 @@ struct FrameRun {
 };
 
 // The records of work are dropped once they are simulated.
-FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress = {});
+FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
+                   const Progress& progress = {});
 
 // The picture with its alpha set to 1, and the depths.
 Image picture_of(const Frame& frame);
 GrayImage depth_of(const Frame& frame);
 
 // The figures of a run, as the documentation of result files lists them.
-nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run);
+nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
+                                  const FrameRun& run);
 
 // Writes frame.exr, frame.png, depth.exr and results.json into `folder`, which exists.
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,

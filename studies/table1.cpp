@@ -55,8 +55,10 @@ void count_slots(const Trace& trace, Table1Row& row) {
 
 Table1 reproduce_table1(const Progress& progress) {
   Table1 table;
-  const kernels::ReferencePicture reference = scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
-  std::map<std::string, traces::CapturedWeights, std::less<>> weights;  // by machine: two algorithms share them
+  const kernels::ReferencePicture reference =
+      scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
+  std::map<std::string, traces::CapturedWeights, std::less<>>
+      weights;  // by machine: two algorithms share them
   double done = 0;
   for (const Published& published : kPublished) {
     const auto step = [&](double fraction) {
@@ -93,14 +95,16 @@ Table1 reproduce_table1(const Progress& progress) {
 }
 
 std::string text_of(const Table1& table) {
-  std::string out = fmt::format("{:<15} {:<16} {:>4} {:>4} {:>10} {:>10} {:>7}  {:<9} {:<18} {:>8}\n", "algorithm",
-                                "machine", "VS1", "VS2", "published", "simulated", "error", "role", "bottleneck",
-                                "PSNR");
+  std::string out =
+      fmt::format("{:<15} {:<16} {:>4} {:>4} {:>10} {:>10} {:>7}  {:<9} {:<18} {:>8}\n", "algorithm",
+                  "machine", "VS1", "VS2", "published", "simulated", "error", "role", "bottleneck", "PSNR");
   for (const Table1Row& row : table.rows) {
-    out += fmt::format("{:<15} {:<16} {:>4} {:>4} {:>6.1f} fps {:>6.2f} fps {:>+6.1f}%  {:<9} {:<12} {:>3.0f} % {:>6.1f} dB\n",
-                       row.algorithm, row.machine, row.visibility_slots, row.splat_slots, row.published_fps,
-                       row.simulated_fps, 100 * row.error(), row.fitted ? "fitted" : "predicted", row.bottleneck,
-                       100 * row.bottleneck_share, row.psnr);
+    out += fmt::format(
+        "{:<15} {:<16} {:>4} {:>4} {:>6.1f} fps {:>6.2f} fps {:>+6.1f}%  {:<9} {:<12} {:>3.0f} % {:>6.1f} "
+        "dB\n",
+        row.algorithm, row.machine, row.visibility_slots, row.splat_slots, row.published_fps,
+        row.simulated_fps, 100 * row.error(), row.fitted ? "fitted" : "predicted", row.bottleneck,
+        100 * row.bottleneck_share, row.psnr);
   }
   return out;
 }

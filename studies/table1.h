@@ -16,12 +16,12 @@ struct Table1Row {
   int splat_slots = 0;
   double published_fps = 0;
   double simulated_fps = 0;
-  bool fitted = false;      // a parameter of the machine was fitted to this very figure
-  std::string fitted_by;    // that parameter
-  std::string bottleneck;   // the unit that was busy for the largest share of the frame
+  bool fitted = false;     // a parameter of the machine was fitted to this very figure
+  std::string fitted_by;   // that parameter
+  std::string bottleneck;  // the unit that was busy for the largest share of the frame
   double bottleneck_share = 0;
   double cycles_per_host_second = 0;
-  double psnr = 0;          // against the double-precision EWA reference, dB
+  double psnr = 0;  // against the double-precision EWA reference, dB
 
   double error() const { return simulated_fps / published_fps - 1; }
 };

@@ -22,12 +22,14 @@ Recording record(const Scene& scene, const CapturedWeights& captured) {
   return out;
 }
 
-Recording record(const Scene& scene, const NumberFormats& formats, const std::function<void(double)>& progress) {
+Recording record(const Scene& scene, const NumberFormats& formats,
+                 const std::function<void(double)>& progress) {
   if (scene.splatting.algorithm != Algorithm::ewa_per_pixel) {
     return record(scene, capture_weights(scene, formats, progress));
   }
   // The sum of the weights must not saturate: gamma keeps it under 1, and the division takes it out again.
-  return record(scene, {std::vector<float>(scene.surfels.size(), static_cast<float>(scene.splatting.gamma)), 0});
+  return record(scene,
+                {std::vector<float>(scene.surfels.size(), static_cast<float>(scene.splatting.gamma)), 0});
 }
 
 }  // namespace splatscope::traces

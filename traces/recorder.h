@@ -22,10 +22,12 @@ struct Recording {
   RecordCounts counts;
 };
 
-// Records one frame of `scene`: clear, visibility splatting, EWA or plain splatting, and for ewa-per-pixel the
-// normalisation on the host. The other algorithms need per-surfel weights, captured first by rendering on the machine
+// Records one frame of `scene`: clear, visibility splatting, EWA or plain splatting, and for ewa-per-pixel
+// the normalisation on the host. The other algorithms need per-surfel weights, captured first by rendering on
+// the machine
 // (`formats`), as section 7.2 describes. `progress` is told the fraction done.
-Recording record(const Scene& scene, const NumberFormats& formats, const std::function<void(double)>& progress = {});
+Recording record(const Scene& scene, const NumberFormats& formats,
+                 const std::function<void(double)>& progress = {});
 
 // The same with weights captured before, one a surfel.
 Recording record(const Scene& scene, const CapturedWeights& captured);

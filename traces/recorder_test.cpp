@@ -41,7 +41,7 @@ TEST(Recorder, TangentsSpanTheSurfel) {
 
 TEST(Recorder, EveryAlgorithmIsASoundTraceOfTwoPasses) {
   for (const Algorithm algorithm : {Algorithm::no_ewa, Algorithm::ewa_per_pixel, Algorithm::ewa_per_surfel}) {
-    const Trace trace = record(small_plane(algorithm), {}).trace;
+    const Trace trace = record(small_plane(algorithm), NumberFormats{}).trace;
     EXPECT_NO_THROW(check_trace(trace, "recorded"));
     const bool per_pixel = algorithm == Algorithm::ewa_per_pixel;
     ASSERT_EQ(per_pixel ? 4u : 3u, trace.commands.size());
@@ -60,7 +60,7 @@ TEST(Recorder, EveryAlgorithmIsASoundTraceOfTwoPasses) {
 TEST(Recorder, DrawsInBatchesOfSixteenBitIndices) {
   Scene scene = small_plane(Algorithm::ewa_per_pixel);
   scene.surfels.resize(20000, scene.surfels.front());
-  const Trace trace = record(scene, {}).trace;
+  const Trace trace = record(scene, NumberFormats{}).trace;
   ASSERT_EQ(6u, trace.commands.size());
   EXPECT_EQ(16384u * 6, std::get<Draw>(trace.commands[1]).index_count);
   EXPECT_EQ(16384u * 4, std::get<Draw>(trace.commands[2]).base_vertex);

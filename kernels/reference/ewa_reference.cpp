@@ -63,7 +63,9 @@ struct RayFunction {
 class Accumulator {
  public:
   Accumulator(const View& view, const ReferenceSettings& settings)
-      : view_(view), settings_(settings), radius_(std::sqrt(2.0 * settings.cutoff)),
+      : view_(view),
+        settings_(settings),
+        radius_(std::sqrt(2.0 * settings.cutoff)),
         reach_(radius_ + std::max(settings.cutoff_tolerance, settings.edge_tolerance)) {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     picture_.width = view.width;

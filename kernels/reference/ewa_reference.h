@@ -18,11 +18,11 @@ struct ReferenceSettings {
   bool prefilter = true;  // false: V_r alone, the plain algorithm
   double cutoff = 1.0;    // c of Eq. 14
   CutoffShape shape = CutoffShape::square;
-  // A splat whose cutoff passes a pixel's centre this close, in units of y, may count there or not. A texel of an alpha
-  // texture of size len is 2 sqrt(2c)/len.
+  // A splat whose cutoff passes a pixel's centre this close, in units of y, may count there or not. A texel
+  // of an alpha texture of size len is 2 sqrt(2c)/len.
   double cutoff_tolerance = 0.0;
-  // The same for the edges of its parallelogram, which a rasteriser moves to its grid: they touch a circular cutoff at
-  // four points. With the prefilter, one pixel moves y by at most 1.
+  // The same for the edges of its parallelogram, which a rasteriser moves to its grid: they touch a circular
+  // cutoff at four points. With the prefilter, one pixel moves y by at most 1.
   double edge_tolerance = 0.0;
 };
 
