@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -13,8 +12,8 @@
 namespace splatscope::kernels {
 namespace {
 
-// A splat that may count at a pixel or not.
-struct Tie {
+// The part of a splat's weight at a pixel that may be there or not.
+struct OpenWeight {
   std::size_t pixel = 0;
   double weight = 0;
   glm::dvec3 color{};
@@ -62,11 +61,7 @@ struct RayFunction {
 
 class Accumulator {
  public:
-  Accumulator(const View& view, const ReferenceSettings& settings)
-      : view_(view),
-        settings_(settings),
-        radius_(std::sqrt(2.0 * settings.cutoff)),
-        reach_(radius_ + std::max(settings.cutoff_tolerance, settings.edge_tolerance)) {
+  Accumulator(const View& view, const ReferenceSettings& settings) : view_(view), settings_(settings) {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     picture_.width = view.width;
     picture_.height = view.height;
@@ -91,7 +86,8 @@ class Accumulator {
     const RayFunction numerator0(view_, glm::cross(b, o));
     const RayFunction numerator1(view_, glm::cross(o, a));
     const double plane = glm::dot(o, normal);
-    const PixelBox box = bounding_box(view_, o, reach_ * a, reach_ * b);
+    const double reach = filter_reach(settings_);
+    const PixelBox box = bounding_box(view_, o, reach * a, reach * b);
     const double height = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter->determinant);
     for (int row = box.top; row < box.bottom; ++row) {
       for (int column = box.left; column < box.right; ++column) {
@@ -109,56 +105,43 @@ class Accumulator {
 
  private:
   void add_at(int row, int column, const glm::dvec2& y, double height, const glm::dvec3& color) {
-    const double to_edge = std::max(std::abs(y.x), std::abs(y.y)) - radius_;
-    const bool circle = settings_.shape == CutoffShape::circle;
-    // Beyond the edge a texture gives its last texel, which lies inside the circle where they touch.
-    const double to_cutoff = circle ? glm::length(glm::clamp(y, -radius_, radius_)) - radius_ : to_edge;
-    const double cutoff_tolerance = circle ? settings_.cutoff_tolerance : reach_ - radius_;
-    const double edge_tolerance = circle ? settings_.edge_tolerance : reach_ - radius_;
-    if (to_cutoff > cutoff_tolerance || to_edge > edge_tolerance) return;
-    const bool inside = to_cutoff <= 0 && to_edge <= 0;
-    const bool tie = std::abs(to_cutoff) < cutoff_tolerance || std::abs(to_edge) < edge_tolerance;
-    const double weight = height * std::exp(-0.5 * glm::dot(y, y));
     const std::size_t pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(view_.width) +
                               static_cast<std::size_t>(column);
-    const glm::dvec4 term(weight * color, weight);
-    if (inside) picture_.sums[pixel] += term;
-    if (tie) {
-      ties_.push_back({pixel, weight, color});
-    } else if (inside) {
-      certain_[pixel] += term;
-    }
+    const glm::dvec4 weighted(height * color, height);
+    picture_.sums[pixel] += filter_value(settings_, y) * weighted;
+    const FilterRange range = filter_range(settings_, y);
+    certain_[pixel] += range.low * weighted;
+    if (range.high > range.low) open_.push_back({pixel, height * (range.high - range.low), color});
   }
 
   const View& view_;
   const ReferenceSettings& settings_;
-  const double radius_;  // of the cutoff, in y
-  const double reach_;   // with the tolerance
   ReferencePicture picture_;
-  std::vector<glm::dvec4> certain_;  // the sums without the ties
-  std::vector<Tie> ties_;
+  std::vector<glm::dvec4> certain_;  // sums at the low end of every range
+  std::vector<OpenWeight> open_;
 };
 
-// The smallest (sum + sum of chosen w c)/(weight + sum of chosen w) over choices among the ties, in one
-// channel. The best choice is every tie of a value under the result, so taking them from the smallest value
-// up finds it.
+// The smallest (sum + sum of w c)/(weight + sum of w) over every choice of weights w, each between 0 and its
+// own, in one channel. The best choice is all of the values under the result, so taking them from the
+// smallest up finds it.
 double lowest_mean(double sum, double weight, std::vector<std::pair<double, double>>& value_and_weight) {
   std::sort(value_and_weight.begin(), value_and_weight.end());
-  for (const auto& [value, tie_weight] : value_and_weight) {
+  for (const auto& [value, open_weight] : value_and_weight) {
     if (weight > 0 && value * weight >= sum) break;
-    sum += value * tie_weight;
-    weight += tie_weight;
+    sum += value * open_weight;
+    weight += open_weight;
   }
   return sum / weight;
 }
 
-void bound_pixel(std::span<const Tie> ties, const glm::dvec4& certain, glm::dvec3& lowest,
+void bound_pixel(std::span<const OpenWeight> open, const glm::dvec4& certain, glm::dvec3& lowest,
                  glm::dvec3& highest) {
-  std::vector<std::pair<double, double>> value_and_weight(ties.size());
+  std::vector<std::pair<double, double>> value_and_weight(open.size());
   for (int channel = 0; channel < 3; ++channel) {
     const auto values = [&](double sign) {
-      std::transform(ties.begin(), ties.end(), value_and_weight.begin(),
-                     [&](const Tie& tie) { return std::pair(sign * tie.color[channel], tie.weight); });
+      std::transform(open.begin(), open.end(), value_and_weight.begin(), [&](const OpenWeight& part) {
+        return std::pair(sign * part.color[channel], part.weight);
+      });
     };
     values(1.0);
     lowest[channel] = lowest_mean(certain[channel], certain.w, value_and_weight);
@@ -167,23 +150,29 @@ void bound_pixel(std::span<const Tie> ties, const glm::dvec4& certain, glm::dvec
   }
 }
 
+// Colour of a pixel from its sums; 0 where nothing counts.
+glm::dvec3 mean(const glm::dvec4& sums) {
+  return sums.w > 0 ? glm::dvec3(sums) / sums.w : glm::dvec3(0.0);
+}
+
 ReferencePicture Accumulator::finish() {
   const std::size_t pixels = picture_.sums.size();
   picture_.normalized.resize(pixels);
+  picture_.lowest.resize(pixels);
   picture_.coverage.resize(pixels, Coverage::none);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    const glm::dvec4& sum = picture_.sums[pixel];
-    if (!(sum.w > 0)) continue;
-    picture_.normalized[pixel] = glm::dvec3(sum) / sum.w;
-    picture_.coverage[pixel] = Coverage::certain;
+    picture_.normalized[pixel] = mean(picture_.sums[pixel]);
+    picture_.lowest[pixel] = mean(certain_[pixel]);
+    if (certain_[pixel].w > 0) picture_.coverage[pixel] = Coverage::certain;
   }
-  picture_.lowest = picture_.highest = picture_.normalized;
-  std::stable_sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.pixel < b.pixel; });
-  for (std::size_t first = 0, last = 0; first < ties_.size(); first = last) {
-    const std::size_t pixel = ties_[first].pixel;
-    while (last < ties_.size() && ties_[last].pixel == pixel) ++last;
+  picture_.highest = picture_.lowest;
+  std::stable_sort(open_.begin(), open_.end(),
+                   [](const OpenWeight& a, const OpenWeight& b) { return a.pixel < b.pixel; });
+  for (std::size_t first = 0, last = 0; first < open_.size(); first = last) {
+    const std::size_t pixel = open_[first].pixel;
+    while (last < open_.size() && open_[last].pixel == pixel) ++last;
     if (!(certain_[pixel].w > 0)) picture_.coverage[pixel] = Coverage::uncertain;
-    bound_pixel(std::span(ties_).subspan(first, last - first), certain_[pixel], picture_.lowest[pixel],
+    bound_pixel(std::span(open_).subspan(first, last - first), certain_[pixel], picture_.lowest[pixel],
                 picture_.highest[pixel]);
   }
   return std::move(picture_);

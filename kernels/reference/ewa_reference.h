@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/object_space_ewa/alpha_texture.h"
+#include "kernels/reference/filter_value.h"
 #include "kernels/reference/surfel_filter.h"
 #include "kernels/view.h"
 
@@ -14,23 +14,7 @@
 // counts, none hides another (a plane, or the surfels that passed a depth test elsewhere).
 namespace splatscope::kernels {
 
-struct ReferenceSettings {
-  bool prefilter = true;  // false: V_r alone, the plain algorithm
-  double cutoff = 1.0;    // c of Eq. 14
-  CutoffShape shape = CutoffShape::square;
-  // A splat whose cutoff passes a pixel's centre this close, in units of y, may count there or not. A texel
-  // of an alpha texture of size len is 2 sqrt(2c)/len.
-  double cutoff_tolerance = 0.0;
-  // The same for the edges of its parallelogram, which a rasteriser moves to its grid: they touch a circular
-  // cutoff at four points. With the prefilter, one pixel moves y by at most 1.
-  double edge_tolerance = 0.0;
-};
-
-enum class Coverage : std::uint8_t {
-  none,
-  uncertain,
-  certain
-};  // uncertain: only by splats that may count or not
+enum class Coverage : std::uint8_t { none, uncertain, certain };  // uncertain: only by splats that may be 0
 
 // Of every pixel, at its centre, rows from the top.
 struct ReferencePicture {
@@ -38,8 +22,8 @@ struct ReferencePicture {
   int height = 0;
   std::vector<glm::dvec4> sums;  // sum of s_k w_k G(m^-1(x) - u_k), and in w of s_k G: no tolerance applied
   std::vector<glm::dvec3> normalized;  // sums divided by their w; 0 where nothing counts
-  // Exact bounds, each channel by itself, of the normalised picture over every choice of the splats within
-  // the tolerance, where at least one splat counts; 0 where none can.
+  // Exact bounds, each channel by itself, of the normalised picture over every choice of the splats' values
+  // in their ranges (filter_range), where at least one splat counts; 0 where none can.
   std::vector<glm::dvec3> lowest;
   std::vector<glm::dvec3> highest;
   std::vector<Coverage> coverage;
