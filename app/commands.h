@@ -14,6 +14,8 @@ struct Invocation {
 // calls. A command has no logic of its own. It reports bad input by throwing UserError.
 void add_machine_command(CLI::App& app);
 void add_record_command(CLI::App& app, Invocation& invocation);
+void add_reproduce_command(CLI::App& app, Invocation& invocation);
+void add_run_command(CLI::App& app, Invocation& invocation);
 void add_scene_command(CLI::App& app);
 void add_trace_command(CLI::App& app);
 

@@ -16,6 +16,8 @@ int run(int argc, char** argv) {
   app.fallthrough();  // --quiet may stand after the command
   Invocation invocation;
   app.add_flag("--quiet", invocation.quiet, "no progress bar");
+  add_reproduce_command(app, invocation);
+  add_run_command(app, invocation);
   add_record_command(app, invocation);
   add_machine_command(app);
   add_trace_command(app);

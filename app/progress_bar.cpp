@@ -11,12 +11,14 @@ namespace splatscope::app {
 ProgressBar::ProgressBar(std::string label, bool quiet)
     : label_(std::move(label)), active_(!quiet && ::isatty(STDERR_FILENO) != 0) {}
 
-ProgressBar::~ProgressBar() {
+void ProgressBar::clear() {
   if (shown_percent_ >= 0) fmt::print(stderr, "\r\x1b[K");  // erase to the end of the line
+  shown_percent_ = -1;
 }
 
 void ProgressBar::show(double fraction_done) {
   const int percent = static_cast<int>(100 * std::clamp(fraction_done, 0.0, 1.0));
+  if (percent == 100) return clear();
   if (!active_ || percent == shown_percent_) return;
   shown_percent_ = percent;
   constexpr int kWidth = 40;

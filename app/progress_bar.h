@@ -10,13 +10,14 @@ namespace splatscope::app {
 class ProgressBar {
  public:
   ProgressBar(std::string label, bool quiet);
-  ~ProgressBar();  // clears the line
+  ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  void show(double fraction_done);  // 0 to 1
+  void show(double fraction_done);  // 0 to 1; at 1 the line goes, so that results can be printed
   std::function<void(double)>
   callback();  // show(), for what reports its progress; empty where nothing is shown
+  void clear();
 
  private:
   std::string label_;

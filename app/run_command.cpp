@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/progress_bar.h"
+#include "studies/run.h"
+#include "traces/output_files.h"
+
+namespace splatscope::app {
+namespace {
+
+struct Options {
+  std::string input;
+  std::string machine = "geforce4-ti4400";
+  std::string fidelity = "cycle";
+  std::vector<std::string> settings;
+  std::string out = "out";
+};
+
+void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
+  std::cout << fmt::format("{} on {}\n", input.name, machine.title);
+  if (input.recorded)
+    std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels, traces::describe(input.skipped));
+  const RenderCounters& c = run.rendered.counters;
+  std::cout << fmt::format(
+      "  {} vertices shaded, {} triangles, {} fragments, of these {} passed the depth test\n", c.vertices,
+      c.triangles, c.fragments, c.fragments_passed);
+  std::cout << fmt::format(
+      "  triangles dropped: {} outside the frustum, {} before the near plane, {} not finite\n",
+      c.triangles_outside, c.triangles_behind, c.triangles_not_finite);
+  if (!run.timing) return;
+  std::cout << fmt::format("  {} cycles, {:.2f} ms, {:.1f} frames a second\n", run.timing->cycles,
+                           1000 * run.timing->seconds, run.timing->frames_per_second());
+  for (const auto& unit : run.timing->units_left_out)
+    std::cout << fmt::format("  left out: {}: {}\n", unit.name, unit.why);
+}
+
+void run(const Options& options, bool quiet) {
+  Machine machine = machine::load(options.machine);
+  for (const std::string& assignment : options.settings) machine::set(machine, assignment);
+  const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
+  traces::prepare_output_folder(options.out);
+  ProgressBar recording("recording", quiet);
+  const studies::Input input = studies::load_input(options.input, machine, recording.callback());
+  recording.clear();
+  ProgressBar running("running", quiet);
+  const studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback());
+  running.clear();
+  studies::write_run(input, machine, fidelity, result, options.out);
+  print(input, machine, result);
+  std::cout << fmt::format("  frame.png, frame.exr, depth.exr and results.json in {}\n", options.out);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("run", "one frame on one machine");
+  const auto options = std::make_shared<Options>();
+  command->add_option("INPUT", options->input, "scene file (TOML), name of a ready scene, or FILE.trace")
+      ->required();
+  command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
+      ->capture_default_str();
+  command->add_option("--fidelity", options->fidelity, "functional, cycle or referee")->capture_default_str();
+  command
+      ->add_option("--set", options->settings,
+                   "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
+      ->allow_extra_args(false);
+  command->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  command->footer(
+      "Example: splatscope run checkerboard-per-surfel --set vertex.units=4 --out out/four-units");
+  command->callback([options, &invocation] { run(*options, invocation.quiet); });
+}
+
+}  // namespace splatscope::app
