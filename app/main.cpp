@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   add_run_command(app, invocation);
   add_record_command(app, invocation);
   add_machine_command(app);
+  add_shader_command(app);
   add_trace_command(app);
   add_scene_command(app);
   try {

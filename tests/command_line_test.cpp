@@ -19,7 +19,10 @@ void expect_refused(const Outcome& outcome, const std::string& part) {
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
   const std::vector<std::vector<std::string>> commands = {
-      {"record"}, {"trace", "info"}, {"scene", "keys"}, {"machine", "list"}, {"machine", "show"}};
+      {"record"},          {"trace", "info"},      {"scene", "keys"},
+      {"machine", "list"}, {"machine", "show"},    {"shader", "check"},
+      {"shader", "count"}, {"shader", "assemble"}, {"shader", "disassemble"},
+      {"shader", "run"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = run_program(command);

@@ -1,0 +1,96 @@
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "app/commands.h"
+#include "model/error.h"
+#include "model/isa/program.h"
+#include "model/isa/tokens.h"
+#include "model/isa/validate.h"
+#include "studies/shader_batch.h"
+#include "studies/shader_report.h"
+#include "traces/output_files.h"
+
+namespace splatscope::app {
+namespace {
+
+struct ShaderOptions {
+  std::string file;
+  std::string out;
+  std::string batch;
+  bool no_validate = false;
+  Arithmetic arithmetic = Arithmetic::ieee;
+};
+using Options = std::shared_ptr<ShaderOptions>;
+
+isa::Program valid_shader(const std::string& file) {
+  isa::Program program = studies::read_shader(file);
+  isa::validate(program);
+  return program;
+}
+
+void assemble(const ShaderOptions& options) {
+  const isa::Program program = studies::read_shader(options.file);
+  if (!options.no_validate) isa::validate(program);
+  traces::write_file(options.out, isa::bytes_of_tokens(isa::write_tokens(program)));
+}
+
+void disassemble(const ShaderOptions& options) {
+  const std::string text = isa::disassemble(studies::read_shader(options.file));
+  if (options.out.empty())
+    std::cout << text;
+  else
+    traces::write_file(options.out, text);
+}
+
+void run_batch(const ShaderOptions& options) {
+  std::ifstream cases(options.batch);
+  if (!cases) throw UserError(options.batch, 0, "cannot be read, expected a file of one JSON object a line");
+  studies::run_shader_batch(cases, options.batch, options.arithmetic, std::cout);
+}
+
+CLI::App* add_part(CLI::App* shader, const Options& options, const char* name, const char* what,
+                   const char* example) {
+  CLI::App* part = shader->add_subcommand(name, what);
+  part->add_option("FILE", options->file, "program: assembly text, or Direct3D tokens")->required();
+  part->footer(example);
+  return part;
+}
+
+}  // namespace
+
+void add_shader_command(CLI::App& app) {
+  const auto options = std::make_shared<ShaderOptions>();
+  CLI::App* shader = app.add_subcommand("shader", "vertex and pixel programs: vs_1_1, ps_1_1 to ps_1_4");
+  shader->require_subcommand(1);
+
+  CLI::App* check = add_part(shader, options, "check", "validate, and say what the program costs and wastes",
+                             "Example: splatscope shader check kernels/object_space_ewa/splat_ewa.vs");
+  check->callback([options] { std::cout << studies::describe_shader(valid_shader(options->file)); });
+
+  CLI::App* count = add_part(shader, options, "count", "the instruction slots",
+                             "Example: splatscope shader count kernels/object_space_ewa/splat_ewa.vs");
+  count->callback([options] { std::cout << isa::slot_count(valid_shader(options->file)) << '\n'; });
+
+  CLI::App* to_tokens = add_part(shader, options, "assemble", "text to Direct3D tokens, little-endian DWORDs",
+                                 "Example: splatscope shader assemble splat.vs -o splat.vso");
+  to_tokens->add_option("-o,--out", options->out, "file of tokens")->required();
+  to_tokens->add_flag("--no-validate", options->no_validate, "syntax only, for fragments");
+  to_tokens->callback([options] { assemble(*options); });
+
+  CLI::App* to_text = add_part(shader, options, "disassemble", "Direct3D tokens to text",
+                               "Example: splatscope shader disassemble splat.vso");
+  to_text->add_option("-o,--out", options->out, "file of text (else standard output)");
+  to_text->callback([options] { disassemble(*options); });
+
+  CLI::App* run = shader->add_subcommand("run", "run programs on given registers");
+  run->add_option("--batch", options->batch, "cases, one JSON object a line")->required();
+  const std::map<std::string, Arithmetic> arithmetics{{"ieee", Arithmetic::ieee}, {"nv20", Arithmetic::nv20}};
+  run->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee (default) or nv20")
+      ->transform(CLI::CheckedTransformer(arithmetics));
+  run->footer("Example: splatscope shader run --batch cases.jsonl --arithmetic nv20");
+  run->callback([options] { run_batch(*options); });
+}
+
+}  // namespace splatscope::app

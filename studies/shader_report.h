@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "model/isa/program.h"
+
+// What `splatscope shader` says of a program.
+namespace splatscope::studies {
+
+// A program from a file's bytes: Direct3D tokens where they begin as a token stream, else text. Not
+// validated. Throws UserError.
+isa::Program shader_of_bytes(std::span<const std::byte> bytes, std::string_view name);
+isa::Program read_shader(const std::string& file);
+
+// Slots, live registers, dead instructions and the critical path, a line an instruction; of a vertex program
+// also what pairs, what waits and the clocks a vertex on each machine.
+std::string describe_shader(const isa::Program& program);
+
+}  // namespace splatscope::studies
