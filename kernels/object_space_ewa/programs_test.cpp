@@ -17,8 +17,7 @@ constexpr double kDepthOffset = 0.05;
 std::vector<Surfel> mixed_surfels(const View& view, std::uint32_t seed) {
   std::printf("seed %u\n", seed);
   std::mt19937 generator(seed);
-  std::vector<Surfel> surfels;
-  for (int i = 0; i < 500; ++i) surfels.push_back(random_surfel(view, SurfelRanges{}, generator));
+  std::vector<Surfel> surfels = random_surfels(view, SurfelRanges{}, 500, generator);
   const glm::dmat4 to_object = glm::inverse(view.object_to_camera);
   const auto add = [&](const glm::dvec3& o, const glm::dvec3& s, const glm::dvec3& t) {  // camera space
     Surfel surfel;
@@ -92,8 +91,7 @@ TEST(Programs, visibility_moves_corners_along_their_viewing_rays) {
   std::mt19937 generator(13);
   SurfelRanges ranges;
   ranges.depth[1] = 10.0;
-  std::vector<Surfel> surfels;
-  for (int i = 0; i < 1000; ++i) surfels.push_back(random_surfel(view, ranges, generator));
+  const std::vector<Surfel> surfels = random_surfels(view, ranges, 1000, generator);
   const auto quads = run_quads(load_program(kVisibilityProgram), Arithmetic::ieee,
                                splat_constants(view, 1.0, kDepthOffset), surfels);
   for (std::size_t i = 0; i < surfels.size(); ++i) {

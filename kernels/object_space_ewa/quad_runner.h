@@ -133,4 +133,12 @@ Surfel random_surfel(const View& view, const SurfelRanges& ranges, Generator& ge
   return surfel;
 }
 
+template <typename Generator>
+std::vector<Surfel> random_surfels(const View& view, const SurfelRanges& ranges, std::size_t count,
+                                   Generator& generator) {
+  std::vector<Surfel> surfels(count);
+  for (Surfel& surfel : surfels) surfel = random_surfel(view, ranges, generator);
+  return surfels;
+}
+
 }  // namespace splatscope::kernels

@@ -97,8 +97,7 @@ Errors measure(Arithmetic arithmetic, std::string_view program, std::uint32_t se
   const bool prefilter = program == kEwaProgram;
   const View view = test_view();
   std::mt19937 generator(seed);
-  std::vector<Surfel> surfels;
-  for (int i = 0; i < kCount; ++i) surfels.push_back(random_surfel(view, ranges, generator));
+  const std::vector<Surfel> surfels = random_surfels(view, ranges, kCount, generator);
   const auto quads =
       run_quads(load_program(program), arithmetic, splat_constants(view, kCutoff, 0.0), surfels);
   Errors errors;
