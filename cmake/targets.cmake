@@ -15,6 +15,12 @@ if(SPLATSCOPE_SANITIZE)
   target_link_options(splatscope_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+if(SPLATSCOPE_FUZZ)
+  target_compile_options(splatscope_options INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+                                                     -fno-sanitize-recover=undefined)
+  target_link_options(splatscope_options INTERFACE -fsanitize=address,undefined)
+endif()
+
 # include/FOLDER/ holds a link to FOLDER alone, so a target finds only the headers of what it links.
 function(splatscope_headers folder target)
   set(root ${CMAKE_BINARY_DIR}/include/${folder})
@@ -72,6 +78,23 @@ function(splatscope_benchmarks folder)
     target_link_libraries(${folder}_benchmarks PRIVATE ${ARGN} splatscope_options benchmark::benchmark_main)
     target_compile_definitions(${folder}_benchmarks PRIVATE SPLATSCOPE_SOURCE="${CMAKE_SOURCE_DIR}")
   endif()
+endfunction()
+
+# x_fuzz.cpp becomes the fuzzer x_fuzz: libFuzzer's where SPLATSCOPE_FUZZ, else a short run over tests/fuzz/x (a test).
+function(splatscope_fuzzers folder)
+  splatscope_sources(${folder} fuzz sources)
+  foreach(source ${sources})
+    get_filename_component(name ${source} NAME_WE)
+    string(REGEX REPLACE "_fuzz$" "" corpus ${name})
+    if(SPLATSCOPE_FUZZ)
+      add_executable(${name} ${source})
+      target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+    else()
+      add_executable(${name} ${source} ${CMAKE_SOURCE_DIR}/tests/fuzz/short_run.cpp)
+      add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 20000)
+    endif()
+    target_link_libraries(${name} PRIVATE ${ARGN} splatscope_options)
+  endforeach()
 endfunction()
 
 # Text files (programs, machines) become a table in the program: splatscope reads no file of its own at run time.

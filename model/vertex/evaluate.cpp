@@ -67,7 +67,7 @@ struct Nv20 {
 template <typename A>
 typename A::Vector evaluate_in(Operation operation, const std::array<typename A::Vector, 3>& sources) {
   using Vector = typename A::Vector;
-  const auto& [a, b, c] = sources;
+  const Vector &a = sources[0], &b = sources[1], &c = sources[2];
   const auto each = [](auto&& component) {
     return Vector{component(std::size_t{0}), component(std::size_t{1}), component(std::size_t{2}),
                   component(std::size_t{3})};
