@@ -20,6 +20,12 @@ std::string dump(const SimulatedMachine& machine) {
   return text;
 }
 
+// The first core edge at or after a bus cycle.
+Cycle core_cycle(const SimulatedMachine& machine, Cycle bus_cycle) {
+  const Femtoseconds time = machine.bus.time(bus_cycle);
+  return time == 0 ? 0 : machine.core.first_after(time - 1);
+}
+
 void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit, const Books& books) {
   UnitBooks entry;
   entry.name = unit.name();
@@ -51,7 +57,7 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
     throw ModelError("the simulated machine is deadlocked:" + dump(*machine));
 
   Result result;
-  result.cycles = machine->bus.reference_cycle(machine->host->finished_at());
+  result.cycles = core_cycle(*machine, machine->host->finished_at());
   result.seconds = static_cast<double>(machine->core.time(result.cycles)) * 1e-15;
   for (const ClockDomain* domain : domains) {
     for (std::size_t place = 0; place < domain->units().size(); ++place) {
@@ -59,7 +65,7 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
     }
   }
   for (const Cycle end : machine->host->command_ends()) {
-    result.command_ends.push_back(machine->bus.reference_cycle(end));
+    result.command_ends.push_back(core_cycle(*machine, end));
   }
   result.units_left_out = machine->left_out;
   if (progress) progress(1);

@@ -163,6 +163,7 @@ void check_together(const Machine& machine, const Place& place) {
       {"texture.cache_lines", machine.texture.cache_lines},
       {"texture.cache_ways", machine.texture.cache_ways},
       {"texture.line_bytes", machine.texture.line_bytes},
+      {"texture.fill_bytes", machine.texture.fill_bytes},
       {"blend.cache_lines", machine.blend.cache_lines},
       {"blend.cache_ways", machine.blend.cache_ways},
       {"memory.channels", machine.memory.channels},
@@ -178,6 +179,7 @@ void check_together(const Machine& machine, const Place& place) {
   const std::tuple<std::string_view, int, std::string_view, int> pairs[] = {
       {"fetch.line_bytes", machine.fetch.line_bytes, "memory.interleave_bytes",
        machine.memory.interleave_bytes},
+      {"texture.fill_bytes", machine.texture.fill_bytes, "texture.line_bytes", machine.texture.line_bytes},
       {"texture.line_bytes", machine.texture.line_bytes, "memory.interleave_bytes",
        machine.memory.interleave_bytes},
       {"memory.burst_bytes", machine.memory.burst_bytes, "memory.interleave_bytes",

@@ -62,6 +62,7 @@ struct Machine {
     int cache_lines = 256;
     int cache_ways = 4;
     int line_bytes = 16;
+    int fill_bytes = 16;
     int lookups_per_clock = 4;
     int pending = 128;
     int latency = 8;

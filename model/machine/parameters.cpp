@@ -125,6 +125,8 @@ std::vector<Parameter> pixel_parameters() {
        "its ways (a power of two)"},
       {"texture.line_bytes", "bytes", integer<&M::texture, &M::Texture::line_bytes>(16, 256),
        "its line: one or more blocks of 4x4 texels (a power of two)"},
+      {"texture.fill_bytes", "bytes", integer<&M::texture, &M::Texture::fill_bytes>(8, 256),
+       "read on a miss: the line, or the part of it that the sample lies in (a power of two)"},
       {"texture.lookups_per_clock", "", integer<&M::texture, &M::Texture::lookups_per_clock>(1, 64),
        "texel blocks looked up a clock"},
       {"texture.pending", "quads", integer<&M::texture, &M::Texture::pending>(1, 4096),

@@ -9,7 +9,7 @@ BlendUnit::BlendUnit(std::string name, Completion& completion, const Machine::Bl
     : DrawUnit(std::move(name), completion),
       lines_(lines),
       quads_per_clock_(quads_per_clock),
-      cache_({spec.cache_lines, spec.cache_ways, lines.line_bytes(), spec.pending}) {}
+      cache_({spec.cache_lines, spec.cache_ways, lines.line_bytes(), lines.line_bytes(), spec.pending}) {}
 
 void BlendUnit::connect(Channel<std::uint32_t>& in, MemoryPort& port, std::uint32_t address) {
   in_ = &in;

@@ -9,6 +9,7 @@ CachePipe::CachePipe(const Spec& spec)
     : items_(static_cast<std::uint32_t>(spec.items)),
       ways_(static_cast<std::uint32_t>(spec.ways)),
       line_bytes_(spec.line_bytes),
+      fill_bytes_(spec.fill_bytes),
       tags_(static_cast<std::size_t>(spec.lines)),
       set_mask_(static_cast<std::uint32_t>(spec.lines / spec.ways) - 1),
       fifo_(std::bit_ceil(items_)) {}
@@ -38,7 +39,8 @@ CachePipe::Way& CachePipe::victim(std::uint32_t line) {
 }
 
 const Unit* CachePipe::move(Cycle now, std::uint32_t line, bool write) {
-  for (; moved_ < line_bytes_; moved_ += part_bytes_) {
+  const std::uint32_t bytes = write ? line_bytes_ : fill_bytes_;
+  for (; moved_ < bytes; moved_ += part_bytes_) {
     const std::uint32_t address = address_ + line * line_bytes_ + moved_;
     if (const Unit* unit = port_->in_the_way(now, address)) {
       next_try_ = port_->next_free(address);
@@ -47,7 +49,7 @@ const Unit* CachePipe::move(Cycle now, std::uint32_t line, bool write) {
     if (write) {
       port_->write(now, address, part_bytes_);
     } else {
-      port_->read(now, address, part_bytes_);
+      port_->read(now, address, std::min(part_bytes_, fill_bytes_));
       ++entering_reads_;
     }
   }

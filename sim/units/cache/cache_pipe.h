@@ -17,6 +17,7 @@ class CachePipe {
     int lines;                 // a power of two
     int ways;                  // a power of two, at most `lines`; least recently used goes
     std::uint32_t line_bytes;  // a power of two
+    std::uint32_t fill_bytes;  // read of a line on a miss
     int items;                 // waiting
   };
   explicit CachePipe(const Spec& spec);
@@ -76,6 +77,7 @@ class CachePipe {
   std::uint32_t items_;
   std::uint32_t ways_;
   std::uint32_t line_bytes_;
+  std::uint32_t fill_bytes_;
   std::uint32_t part_bytes_ = 0;
   std::vector<Way> tags_;  // a set's ways side by side
   std::uint32_t set_mask_;

@@ -9,7 +9,7 @@ DepthUnit::DepthUnit(std::string name, Completion& completion, const Machine::De
     : DrawUnit(std::move(name), completion),
       lines_(lines),
       quads_per_clock_(quads_per_clock),
-      cache_({spec.cache_lines, spec.cache_ways, lines.line_bytes(), spec.pending}),
+      cache_({spec.cache_lines, spec.cache_ways, lines.line_bytes(), lines.line_bytes(), spec.pending}),
       cleared_(lines.lines(), false) {}
 
 void DepthUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port,

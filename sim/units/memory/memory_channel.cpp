@@ -16,6 +16,12 @@ MemoryChannel::MemoryChannel(std::string name, const Machine::Memory& spec)
     : Unit(std::move(name)),
       spec_(spec),
       burst_clocks_(static_cast<Cycle>(spec.burst_bytes / spec.channel_bytes_per_clock)),
+      precharge_(static_cast<Cycle>(spec.precharge_clocks)),
+      activate_(static_cast<Cycle>(spec.activate_clocks)),
+      cas_(static_cast<Cycle>(spec.cas_clocks)),
+      row_active_(static_cast<Cycle>(spec.row_active_clocks)),
+      write_recovery_(static_cast<Cycle>(spec.write_recovery_clocks)),
+      turnaround_(static_cast<Cycle>(spec.turnaround_clocks)),
       interleave_shift_(log2_of(spec.interleave_bytes)),
       row_shift_(log2_of(spec.row_bytes)),
       channel_shift_(log2_of(spec.channels)),
@@ -51,34 +57,48 @@ bool MemoryChannel::accept(Cycle now) {
   return false;
 }
 
-// The oldest that hits an open row, unless the oldest of all has been overtaken often enough.
-std::size_t MemoryChannel::pick() {
-  if (bypassed_ < spec_.bypass_limit) {
-    for (std::size_t i = 0; i < queue_.size(); ++i) {
-      if (banks_[queue_[i].bank].open_row == queue_[i].row) return i;
-    }
+// The cycle at which the request's first data can be on the bus.
+Cycle MemoryChannel::earliest_data(Cycle now, const Entry& entry) const {
+  const Bank& bank = banks_[entry.bank];
+  Cycle access = now;
+  if (bank.open_row == entry.row) {
+    access = std::max(now, bank.access_from);
+  } else if (bank.open_row == kNever) {
+    access = now + activate_;
+  } else {
+    access = std::max(now, bank.precharge_from) + precharge_ + activate_;
   }
-  return 0;
+  return std::max(access + cas_, bus_free_ + (entry.write == last_was_write_ ? 0 : turnaround_));
 }
 
-// The cycle of the first data, with the bank's commands done on the way.
-Cycle MemoryChannel::first_data(Cycle now, const Entry& entry) {
+// The request whose data can come first (so an open row before a closed one, and what goes on reading before
+// a write), the oldest of equals; the oldest of all once it has been overtaken often enough.
+std::size_t MemoryChannel::pick(Cycle now) const {
+  if (bypassed_ >= spec_.bypass_limit) return 0;
+  std::size_t best = 0;
+  Cycle best_data = kNever;
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const Cycle data = earliest_data(now, queue_[i]);
+    if (data < best_data) {
+      best = i;
+      best_data = data;
+    }
+  }
+  return best;
+}
+
+// Opens the row of a request where it is not open.
+void MemoryChannel::open_row(Cycle now, const Entry& entry) {
   Bank& bank = banks_[entry.bank];
   if (bank.open_row == entry.row) {
     ++row_hits_;
-  } else {
-    ++row_misses_;
-    Cycle activate = now;
-    if (bank.open_row != kNever) {
-      activate = std::max(now, bank.precharge_from) + static_cast<Cycle>(spec_.precharge_clocks);
-    }
-    bank.open_row = entry.row;
-    bank.access_from = activate + static_cast<Cycle>(spec_.activate_clocks);
-    bank.precharge_from = activate + static_cast<Cycle>(spec_.row_active_clocks);
+    return;
   }
-  const Cycle turnaround = entry.write == last_was_write_ ? 0 : static_cast<Cycle>(spec_.turnaround_clocks);
-  const Cycle from_bank = std::max(now, bank.access_from) + static_cast<Cycle>(spec_.cas_clocks);
-  return std::max(from_bank, bus_free_ + turnaround);
+  ++row_misses_;
+  const Cycle activate = bank.open_row == kNever ? now : std::max(now, bank.precharge_from) + precharge_;
+  bank.open_row = entry.row;
+  bank.access_from = activate + activate_;
+  bank.precharge_from = activate + row_active_;
 }
 
 void MemoryChannel::issue(Cycle now, std::size_t index) {
@@ -86,18 +106,17 @@ void MemoryChannel::issue(Cycle now, std::size_t index) {
   queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(index));
   bypassed_ = index == 0 ? 0 : bypassed_ + 1;
 
-  const Cycle first = first_data(now, entry);
+  const Cycle first = earliest_data(now, entry);
+  open_row(now, entry);
   const Cycle length = entry.bursts * burst_clocks_;
   bus_free_ = first + length;
   last_was_write_ = entry.write;
   Bank& bank = banks_[entry.bank];
-  bank.access_from = first - static_cast<Cycle>(spec_.cas_clocks) + length;
-  const Cycle recovery = entry.write ? static_cast<Cycle>(spec_.write_recovery_clocks) : 0;
-  bank.precharge_from = std::max(bank.precharge_from, bus_free_ + recovery);
+  bank.access_from = first - cas_ + length;
+  bank.precharge_from = std::max(bank.precharge_from, bus_free_ + (entry.write ? write_recovery_ : 0));
   data_clocks_ += length;
   // The next is picked while there is still time to open its row before the data bus is free.
-  const auto preparation =
-      static_cast<Cycle>(spec_.precharge_clocks + spec_.activate_clocks + spec_.cas_clocks);
+  const Cycle preparation = precharge_ + activate_ + cas_;
   next_issue_ = std::max(now + 1, bus_free_ > preparation ? bus_free_ - preparation : 0);
 
   event(now, (first << 16) ^ (std::uint64_t{entry.client} << 8) ^ entry.bank);
@@ -118,7 +137,7 @@ Cycle MemoryChannel::next_accept() const {
 }
 
 Step MemoryChannel::advance(Cycle now) {
-  if (!queue_.empty() && next_issue_ <= now) issue(now, pick());
+  if (!queue_.empty() && next_issue_ <= now) issue(now, pick(now));
   const bool accepted = accept(now);
   const Cycle next = next_accept();
   if (!queue_.empty()) return busy(std::max(std::min(next, next_issue_), now + 1));

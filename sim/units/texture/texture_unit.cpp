@@ -17,8 +17,8 @@ TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine
       quads_per_clock_(quads_per_clock),
       line_shift_(
           static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))),
-      cache_({spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes), spec.pending}) {
-}
+      cache_({spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes),
+              static_cast<std::uint32_t>(spec.fill_bytes), spec.pending}) {}
 
 void TextureUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out, MemoryPort& port) {
   in_ = &in;

@@ -14,7 +14,7 @@ VertexFetch::VertexFetch(std::string name, Completion& completion, const Machine
       spec_(spec),
       threads_(static_cast<std::uint32_t>(threads)),
       cache_({spec.cache_lines, std::min(spec.cache_lines, 4), static_cast<std::uint32_t>(spec.line_bytes),
-              spec.pending_groups}) {}
+              static_cast<std::uint32_t>(spec.line_bytes), spec.pending_groups}) {}
 
 void VertexFetch::connect(const Ports& video, const Ports& agp, std::vector<Channel<VertexGroup>*> units,
                           Channel<std::uint8_t>& order) {
