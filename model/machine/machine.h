@@ -24,6 +24,7 @@ struct Machine {
     int scalar_latency = 1;
     int scalar_interval = 1;
     bool pairing = false;
+    bool driver_reorders = false;
     int group_start_cycles = 0;
     int cache_entries = 18;
     int output_groups = 4;

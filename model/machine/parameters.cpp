@@ -68,6 +68,8 @@ std::vector<Parameter> geometry_parameters() {
        "between two issues of the scalar unit"},
       {"vertex.pairing", "", on_off<&M::vertex, &M::Vertex::pairing>(),
        "a vector and a scalar instruction that stand side by side may share an issue slot"},
+      {"vertex.driver_reorders", "", on_off<&M::vertex, &M::Vertex::driver_reorders>(),
+       "the driver orders independent instructions for the unit"},
       {"vertex.group_start_cycles", "clocks", integer<&M::vertex, &M::Vertex::group_start_cycles>(0, 64),
        "between the last issue of a group of vertices and the first of the next"},
       {"vertex.cache_entries", "vertices", integer<&M::vertex, &M::Vertex::cache_entries>(1, 1024),

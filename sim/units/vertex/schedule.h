@@ -7,31 +7,12 @@
 #include "model/isa/program.h"
 #include "model/machine/machine.h"
 #include "sim/kernel/cycle.h"
+#include "sim/units/vertex/issue_slots.h"
 
 // When a vertex unit issues the instructions of a group of vertices. A vs_1_1 program has no branches and
 // touches no memory, so this is a function of the program, the size of the group and the unit's parameters
 // alone.
 namespace splatscope::sim {
-
-// Register components that an instruction reads or writes: bit 4r + c is component c of temporary r, 48 is
-// a0.x.
-using ComponentMask = std::uint64_t;
-inline constexpr int kComponents = 49;
-
-// What issues in one slot: an instruction, or a vector and a scalar one side by side.
-struct IssueSlot {
-  ComponentMask reads = 0;
-  ComponentMask vector_writes = 0;
-  ComponentMask scalar_writes = 0;
-  bool has_vector = false;
-  bool has_scalar = false;
-};
-
-// The slots of a program in order, macros expanded. Two neighbours share a slot where the unit pairs
-// (`vertex.pairing`) and: one is a vector and one a scalar instruction; neither needs the other's result;
-// together they read at most one constant and one input register; the vector one leaves the third operand
-// port free (it is not add, sub or mad); at most one of them writes an output register.
-std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec);
 
 // The issue logic of a unit, cycle by cycle: the threads (vertices) of a group take turns, and each cycle the
 // first one in turn issues whose operands are there, and for whose scalar instruction the scalar unit is
@@ -45,13 +26,14 @@ class IssueLogic {
   // One cycle. Returns the thread that issued, or -1.
   int issue();
   bool done() const { return left_ == 0; }
-  Cycle now() const { return now_; }                  // cycles since the start
+  // Cycles from the start to the one in which the next group may issue, once done.
+  Cycle issue_cycles() const { return now_; }
   Cycle last_result() const { return last_result_; }  // cycles from the start to the last result
 
  private:
   struct Thread {
     std::size_t slot = 0;
-    std::array<Cycle, kComponents> ready{};
+    std::array<Cycle, kRegisters> ready{};  // when the last result of each register is there
   };
   bool can_issue(const Thread& thread, const IssueSlot& slot) const;
   void record(Thread& thread, ComponentMask writes, Cycle latency);
@@ -69,7 +51,7 @@ class IssueLogic {
 
 // A group from its first issue on.
 struct GroupSchedule {
-  Cycle issue_cycles = 0;   // until the cycle after its last issue
+  Cycle issue_cycles = 0;   // until another may issue
   Cycle result_cycles = 0;  // until its last result
 };
 

@@ -56,10 +56,10 @@ bool VertexUnit::take(Cycle now) {
 }
 
 // The referee's: one cycle of the issue logic.
-void VertexUnit::issue_cycle(Cycle now) {
+void VertexUnit::issue_cycle() {
   issuing_->issue();
   if (!issuing_->done()) return;
-  next_start_ = now + 1 + static_cast<Cycle>(spec_.group_start_cycles);
+  next_start_ = issue_start_ + issuing_->issue_cycles() + static_cast<Cycle>(spec_.group_start_cycles);
   results_.back().at = issue_start_ + issuing_->last_result();
   issuing_ = nullptr;
 }
@@ -67,7 +67,7 @@ void VertexUnit::issue_cycle(Cycle now) {
 Step VertexUnit::advance(Cycle now) {
   const bool retired = retire(now);
   const bool took = take(now);
-  if (issuing_) issue_cycle(now);
+  if (issuing_) issue_cycle();
   if (issuing_) return busy(now + 1);
   if (next_start_ > now) {  // a result may be due while the group behind it issues
     if (results_.empty()) return busy(next_start_);

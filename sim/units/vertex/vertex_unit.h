@@ -47,7 +47,7 @@ class VertexUnit final : public DrawUnit {
   std::uint64_t start(const DrawJob& job) override;
   bool retire(Cycle now);
   bool take(Cycle now);
-  void issue_cycle(Cycle now);
+  void issue_cycle();
   Step waiting(Cycle now) const;
 
   Machine::Vertex spec_;

@@ -1,0 +1,282 @@
+#include "sim/units/vertex/issue_slots.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "model/isa/opcode.h"
+
+namespace splatscope::sim {
+namespace {
+
+using isa::Instruction;
+using isa::Opcode;
+using isa::RegisterFile;
+using isa::Source;
+
+constexpr ComponentMask kAddress = ComponentMask{1} << 48;
+
+bool is_scalar(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::rcp:
+    case Opcode::rsq:
+    case Opcode::expp:
+    case Opcode::logp:
+    case Opcode::lit:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// The rows of a matrix macro: a dot product each.
+std::vector<Instruction> matrix_rows(const Instruction& instruction, const isa::MatrixShape& shape) {
+  std::vector<Instruction> rows;
+  for (int row = 0; row < shape.rows; ++row) {
+    Instruction dot = instruction;
+    dot.opcode = shape.columns == 4 ? Opcode::dp4 : Opcode::dp3;
+    dot.destination.mask = static_cast<std::uint8_t>(1u << row);
+    dot.sources[1].index = static_cast<std::uint8_t>(instruction.sources[1].index + row);
+    rows.push_back(dot);
+  }
+  return rows;
+}
+
+// exp, log and frc: a scalar instruction and a chain behind it, each on the result of the one before. What
+// the chip runs for them is not known; the length is Direct3D's.
+std::vector<Instruction> chain(const Instruction& instruction, int slots) {
+  Instruction link = instruction;
+  link.opcode = instruction.opcode == Opcode::log ? Opcode::logp : Opcode::expp;
+  std::vector<Instruction> links{link};
+  link.opcode = Opcode::mul;
+  link.source_count = 1;
+  link.sources[0] = {};
+  link.sources[0].file = instruction.destination.file;
+  link.sources[0].index = instruction.destination.index;
+  links.resize(static_cast<std::size_t>(slots), link);
+  return links;
+}
+
+std::vector<Instruction> expanded(const Instruction& instruction, isa::Version version) {
+  if (const auto shape = isa::matrix_shape(instruction.opcode); shape.rows != 0)
+    return matrix_rows(instruction, shape);
+  const isa::OpcodeInfo* info = isa::find_opcode(version, instruction.opcode);
+  if (info && info->slots > 1) return chain(instruction, info->slots);
+  return {instruction};
+}
+
+// Components of the source operand (before its swizzle) that source `index` of the instruction uses.
+unsigned used_components(const Instruction& instruction, int index) {
+  switch (instruction.opcode) {
+    case Opcode::dp3:
+      return 0x7;
+    case Opcode::dp4:
+      return 0xf;
+    case Opcode::lit:
+      return 0xb;  // x, y, w
+    case Opcode::dst:
+      return index == 0 ? 0x6 : 0xa;  // y, z and y, w
+    case Opcode::rcp:
+    case Opcode::rsq:
+    case Opcode::expp:
+    case Opcode::logp:
+      return 0x8;  // a replicated component: the last of the swizzle is any of them
+    default:
+      return instruction.destination.mask;
+  }
+}
+
+ComponentMask reads_of(const Instruction& instruction) {
+  ComponentMask reads = 0;
+  for (int i = 0; i < instruction.source_count; ++i) {
+    const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+    if (source.relative) reads |= kAddress;
+    if (source.file != RegisterFile::temporary) continue;
+    const unsigned used = used_components(instruction, i);
+    for (unsigned component = 0; component < 4; ++component) {
+      if (used >> component & 1) reads |= ComponentMask{1} << (4 * source.index + source.swizzle[component]);
+    }
+  }
+  return reads;
+}
+
+ComponentMask writes_of(const Instruction& instruction) {
+  if (instruction.opcode == Opcode::nop) return 0;
+  switch (instruction.destination.file) {
+    case RegisterFile::temporary:
+      return ComponentMask{instruction.destination.mask} << (4 * instruction.destination.index);
+    case RegisterFile::address:
+      return kAddress;
+    default:
+      return 0;
+  }
+}
+
+bool writes_output(const Instruction& instruction) {
+  const RegisterFile file = instruction.destination.file;
+  return instruction.opcode != Opcode::nop && file != RegisterFile::temporary &&
+         file != RegisterFile::address;
+}
+
+bool uses_third_port(Opcode opcode) {
+  return opcode == Opcode::add || opcode == Opcode::sub || opcode == Opcode::mad;
+}
+
+// Whether the two read at most one register of a file (constants, inputs) together.
+bool at_most_one(const Instruction& a, const Instruction& b, RegisterFile file) {
+  const Source* seen = nullptr;
+  for (const Instruction* instruction : {&a, &b}) {
+    for (int i = 0; i < instruction->source_count; ++i) {
+      const Source& source = instruction->sources[static_cast<std::size_t>(i)];
+      if (source.file != file) continue;
+      if (seen && (seen->index != source.index || seen->relative != source.relative)) return false;
+      seen = &source;
+    }
+  }
+  return true;
+}
+
+bool can_pair(const Instruction& first, const Instruction& second) {
+  if (first.opcode == Opcode::nop || second.opcode == Opcode::nop) return false;
+  if (is_scalar(first.opcode) == is_scalar(second.opcode)) return false;
+  const Instruction& vector = is_scalar(first.opcode) ? second : first;
+  return !uses_third_port(vector.opcode) &&
+         (writes_of(first) & (reads_of(second) | writes_of(second))) == 0 &&
+         at_most_one(first, second, RegisterFile::constant) &&
+         at_most_one(first, second, RegisterFile::input) && !(writes_output(first) && writes_output(second));
+}
+
+void add(IssueSlot& slot, const Instruction& instruction) {
+  slot.reads |= reads_of(instruction);
+  if (is_scalar(instruction.opcode)) {
+    slot.has_scalar = true;
+    slot.scalar_writes |= writes_of(instruction);
+  } else {
+    slot.has_vector = true;
+    slot.vector_writes |= writes_of(instruction);
+  }
+}
+
+// The order in which a driver gives the instructions of a program, which is a straight line: list scheduling,
+// the instruction with the longest chain behind it first. It keeps to the registers that the program names.
+class Reorder {
+ public:
+  Reorder(const std::vector<Instruction>& instructions, const Machine::Vertex& spec)
+      : instructions_(instructions), count_(instructions.size()), pairing_(spec.pairing) {
+    // Clocks in slots: the threads take turns, so a slot of one of them takes as many clocks as there are
+    // threads.
+    const auto in_slots = [&](int clocks) { return (clocks + spec.threads - 1) / spec.threads; };
+    vector_distance_ = in_slots(spec.vector_latency);
+    scalar_distance_ = in_slots(spec.scalar_latency);
+    scalar_gap_ = spec.scalar_interval;
+    for (const Instruction& instruction : instructions)
+      nodes_.push_back({reads_of(instruction), writes_of(instruction)});
+    for (std::size_t i = count_; i-- > 0;) {
+      for (std::size_t j = i + 1; j < count_; ++j) {
+        const int apart = distance(i, j);
+        if (apart >= 0) nodes_[i].height = std::max(nodes_[i].height, nodes_[j].height + apart);
+      }
+    }
+  }
+
+  std::vector<IssueSlot> run() {
+    std::vector<IssueSlot> slots;
+    std::size_t left = count_;
+    for (; left != 0; ++now_) {
+      const std::size_t first = best(count_);
+      if (first == count_) continue;  // here the unit will wait
+      IssueSlot slot;
+      place(first, slot);
+      --left;
+      const std::size_t second = pairing_ ? best(first) : count_;
+      if (second != count_) {
+        place(second, slot);
+        --left;
+      }
+      slots.push_back(slot);
+    }
+    return slots;
+  }
+
+ private:
+  static constexpr int kNotPlaced = -1;
+
+  struct Node {
+    ComponentMask reads;
+    ComponentMask writes;
+    int height = 0;  // slots to the end of the longest chain behind it
+    int slot = kNotPlaced;
+  };
+
+  // Slots that `later` must stand behind `earlier`; -1: they are independent.
+  int distance(std::size_t earlier, std::size_t later) const {
+    const Node& a = nodes_[earlier];
+    const Node& b = nodes_[later];
+    if ((a.writes & (b.reads | b.writes)) != 0) {
+      return is_scalar(instructions_[earlier].opcode) ? scalar_distance_ : vector_distance_;
+    }
+    return (a.reads & b.writes) != 0 ? 0 : -1;
+  }
+
+  bool is_ready(std::size_t index) const {
+    if (is_scalar(instructions_[index].opcode) && now_ < scalar_free_) return false;
+    for (std::size_t i = 0; i < index; ++i) {
+      const int apart = distance(i, index);
+      if (apart >= 0 && (nodes_[i].slot == kNotPlaced || nodes_[i].slot + apart > now_)) return false;
+    }
+    return true;
+  }
+
+  // The ready instruction with the longest chain behind it, of those that pair with `partner` (count_: any at
+  // all). count_: there is none.
+  std::size_t best(std::size_t partner) const {
+    std::size_t chosen = count_;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (nodes_[i].slot != kNotPlaced || !is_ready(i)) continue;
+      if (partner != count_ &&
+          !can_pair(instructions_[std::min(i, partner)], instructions_[std::max(i, partner)])) {
+        continue;
+      }
+      if (chosen == count_ || nodes_[i].height > nodes_[chosen].height) chosen = i;
+    }
+    return chosen;
+  }
+
+  void place(std::size_t index, IssueSlot& slot) {
+    nodes_[index].slot = now_;
+    if (is_scalar(instructions_[index].opcode)) scalar_free_ = now_ + scalar_gap_;
+    add(slot, instructions_[index]);
+  }
+
+  const std::vector<Instruction>& instructions_;
+  std::size_t count_;
+  bool pairing_;
+  int vector_distance_ = 1, scalar_distance_ = 1, scalar_gap_ = 1;
+  std::vector<Node> nodes_;
+  int now_ = 0;
+  int scalar_free_ = 0;
+};
+
+std::vector<IssueSlot> in_program_order(const std::vector<Instruction>& instructions, bool pairing) {
+  std::vector<IssueSlot> slots;
+  for (std::size_t i = 0; i < instructions.size(); ++i) {
+    IssueSlot& slot = slots.emplace_back();
+    add(slot, instructions[i]);
+    if (pairing && i + 1 < instructions.size() && can_pair(instructions[i], instructions[i + 1])) {
+      add(slot, instructions[++i]);
+    }
+  }
+  return slots;
+}
+
+}  // namespace
+
+std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec) {
+  std::vector<Instruction> instructions;
+  for (const Instruction& instruction : program.instructions) {
+    for (const Instruction& part : expanded(instruction, program.version)) instructions.push_back(part);
+  }
+  if (spec.driver_reorders) return Reorder(instructions, spec).run();
+  return in_program_order(instructions, spec.pairing);
+}
+
+}  // namespace splatscope::sim

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/isa/program.h"
+#include "model/machine/machine.h"
+
+// A vertex program as a unit issues it.
+namespace splatscope::sim {
+
+// Register components that an instruction reads or writes: bit 4r + c is component c of temporary r, 48 is
+// a0.x.
+using ComponentMask = std::uint64_t;
+inline constexpr int kRegisters = 13;
+
+// What issues in one slot: an instruction, or a vector and a scalar one side by side.
+struct IssueSlot {
+  ComponentMask reads = 0;
+  ComponentMask vector_writes = 0;
+  ComponentMask scalar_writes = 0;
+  bool has_vector = false;
+  bool has_scalar = false;
+};
+
+// The slots of a program in order, macros expanded. Two neighbours share a slot where the unit pairs
+// (`vertex.pairing`) and: one is a vector and one a scalar instruction; neither needs the other's result;
+// together they read at most one constant and one input register; the vector one leaves the third operand
+// port free (it is not add, sub or mad); at most one of them writes an output register.
+std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec);
+
+}  // namespace splatscope::sim
