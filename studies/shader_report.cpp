@@ -26,17 +26,11 @@ struct Issue {
 
 std::vector<Issue> issues_of(const isa::Program& program, const Machine::Vertex& spec) {
   const std::vector<sim::IssueSlot> slots = sim::issue_slots(program, spec);
-  std::vector<std::size_t> expanded;  // the instruction of each part
-  for (std::size_t i = 0; i < program.instructions.size(); ++i) {
-    const int parts = isa::find_opcode(program.version, program.instructions[i].opcode)->slots;
-    expanded.insert(expanded.end(), static_cast<std::size_t>(parts), i);
-  }
   std::vector<Issue> issues(slots.size());
-  std::size_t part = 0;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    const std::size_t parts = slots[i].has_vector && slots[i].has_scalar ? 2 : 1;
-    for (std::size_t k = 0; k < parts && part < expanded.size(); ++k)
-      issues[i].instructions.push_back(expanded[part++]);
+    for (const int place : slots[i].instructions) {
+      if (place >= 0) issues[i].instructions.push_back(static_cast<std::size_t>(place));
+    }
   }
   sim::IssueLogic logic(slots, spec);
   logic.start(spec.threads);

@@ -145,7 +145,15 @@ bool can_pair(const Instruction& first, const Instruction& second) {
          at_most_one(first, second, RegisterFile::input) && !(writes_output(first) && writes_output(second));
 }
 
-void add(IssueSlot& slot, const Instruction& instruction) {
+// An instruction of the expanded program, and the place of what it stands for in the program.
+struct Part {
+  Instruction instruction;
+  int place;
+};
+
+void add(IssueSlot& slot, const Part& part) {
+  const Instruction& instruction = part.instruction;
+  slot.instructions[slot.instructions[0] < 0 ? 0 : 1] = part.place;
   slot.reads |= reads_of(instruction);
   if (is_scalar(instruction.opcode)) {
     slot.has_scalar = true;
@@ -160,16 +168,17 @@ void add(IssueSlot& slot, const Instruction& instruction) {
 // the instruction with the longest chain behind it first. It keeps to the registers that the program names.
 class Reorder {
  public:
-  Reorder(const std::vector<Instruction>& instructions, const Machine::Vertex& spec)
-      : instructions_(instructions), count_(instructions.size()), pairing_(spec.pairing) {
+  Reorder(const std::vector<Part>& parts, const Machine::Vertex& spec)
+      : parts_(parts), count_(parts.size()), pairing_(spec.pairing) {
     // Clocks in slots: the threads take turns, so a slot of one of them takes as many clocks as there are
     // threads.
     const auto in_slots = [&](int clocks) { return (clocks + spec.threads - 1) / spec.threads; };
     vector_distance_ = in_slots(spec.vector_latency);
     scalar_distance_ = in_slots(spec.scalar_latency);
     scalar_gap_ = spec.scalar_interval;
-    for (const Instruction& instruction : instructions)
-      nodes_.push_back({reads_of(instruction), writes_of(instruction)});
+    for (const Part& part : parts) {
+      nodes_.push_back({reads_of(part.instruction), writes_of(part.instruction)});
+    }
     for (std::size_t i = count_; i-- > 0;) {
       for (std::size_t j = i + 1; j < count_; ++j) {
         const int apart = distance(i, j);
@@ -212,13 +221,13 @@ class Reorder {
     const Node& a = nodes_[earlier];
     const Node& b = nodes_[later];
     if ((a.writes & (b.reads | b.writes)) != 0) {
-      return is_scalar(instructions_[earlier].opcode) ? scalar_distance_ : vector_distance_;
+      return is_scalar(parts_[earlier].instruction.opcode) ? scalar_distance_ : vector_distance_;
     }
     return (a.reads & b.writes) != 0 ? 0 : -1;
   }
 
   bool is_ready(std::size_t index) const {
-    if (is_scalar(instructions_[index].opcode) && now_ < scalar_free_) return false;
+    if (is_scalar(parts_[index].instruction.opcode) && now_ < scalar_free_) return false;
     for (std::size_t i = 0; i < index; ++i) {
       const int apart = distance(i, index);
       if (apart >= 0 && (nodes_[i].slot == kNotPlaced || nodes_[i].slot + apart > now_)) return false;
@@ -233,7 +242,7 @@ class Reorder {
     for (std::size_t i = 0; i < count_; ++i) {
       if (nodes_[i].slot != kNotPlaced || !is_ready(i)) continue;
       if (partner != count_ &&
-          !can_pair(instructions_[std::min(i, partner)], instructions_[std::max(i, partner)])) {
+          !can_pair(parts_[std::min(i, partner)].instruction, parts_[std::max(i, partner)].instruction)) {
         continue;
       }
       if (chosen == count_ || nodes_[i].height > nodes_[chosen].height) chosen = i;
@@ -243,11 +252,11 @@ class Reorder {
 
   void place(std::size_t index, IssueSlot& slot) {
     nodes_[index].slot = now_;
-    if (is_scalar(instructions_[index].opcode)) scalar_free_ = now_ + scalar_gap_;
-    add(slot, instructions_[index]);
+    if (is_scalar(parts_[index].instruction.opcode)) scalar_free_ = now_ + scalar_gap_;
+    add(slot, parts_[index]);
   }
 
-  const std::vector<Instruction>& instructions_;
+  const std::vector<Part>& parts_;
   std::size_t count_;
   bool pairing_;
   int vector_distance_ = 1, scalar_distance_ = 1, scalar_gap_ = 1;
@@ -256,13 +265,13 @@ class Reorder {
   int scalar_free_ = 0;
 };
 
-std::vector<IssueSlot> in_program_order(const std::vector<Instruction>& instructions, bool pairing) {
+std::vector<IssueSlot> in_program_order(const std::vector<Part>& parts, bool pairing) {
   std::vector<IssueSlot> slots;
-  for (std::size_t i = 0; i < instructions.size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     IssueSlot& slot = slots.emplace_back();
-    add(slot, instructions[i]);
-    if (pairing && i + 1 < instructions.size() && can_pair(instructions[i], instructions[i + 1])) {
-      add(slot, instructions[++i]);
+    add(slot, parts[i]);
+    if (pairing && i + 1 < parts.size() && can_pair(parts[i].instruction, parts[i + 1].instruction)) {
+      add(slot, parts[++i]);
     }
   }
   return slots;
@@ -271,12 +280,13 @@ std::vector<IssueSlot> in_program_order(const std::vector<Instruction>& instruct
 }  // namespace
 
 std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec) {
-  std::vector<Instruction> instructions;
-  for (const Instruction& instruction : program.instructions) {
-    for (const Instruction& part : expanded(instruction, program.version)) instructions.push_back(part);
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < program.instructions.size(); ++i) {
+    for (const Instruction& instruction : expanded(program.instructions[i], program.version)) {
+      parts.push_back({instruction, static_cast<int>(i)});
+    }
   }
-  if (spec.driver_reorders) return Reorder(instructions, spec).run();
-  return in_program_order(instructions, spec.pairing);
+  return spec.driver_reorders ? Reorder(parts, spec).run() : in_program_order(parts, spec.pairing);
 }
 
 }  // namespace splatscope::sim

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct IssueSlot {
   ComponentMask scalar_writes = 0;
   bool has_vector = false;
   bool has_scalar = false;
+  std::array<int, 2> instructions{-1, -1};  // their places in the program; -1: there is no second
 };
 
 // The slots of a program in order, macros expanded. Two neighbours share a slot where the unit pairs
