@@ -1,5 +1,8 @@
+#include <unistd.h>
+
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
 
@@ -9,6 +12,7 @@
 #include "model/isa/tokens.h"
 #include "model/isa/validate.h"
 #include "studies/shader_batch.h"
+#include "studies/shader_debugger.h"
 #include "studies/shader_report.h"
 #include "traces/output_files.h"
 
@@ -19,6 +23,7 @@ struct ShaderOptions {
   std::string file;
   std::string out;
   std::string batch;
+  std::string registers;
   bool no_validate = false;
   Arithmetic arithmetic = Arithmetic::ieee;
 };
@@ -48,6 +53,20 @@ void run_batch(const ShaderOptions& options) {
   std::ifstream cases(options.batch);
   if (!cases) throw UserError(options.batch, 0, "cannot be read, expected a file of one JSON object a line");
   studies::run_shader_batch(cases, options.batch, options.arithmetic, std::cout);
+}
+
+// Registers from a file of one JSON object, or none.
+studies::ShaderCase registers_of(const std::string& file) {
+  if (file.empty()) return {"{}", "no registers", 0};
+  std::ifstream in(file);
+  if (!in) throw UserError(file, 0, "cannot be read, expected a JSON object of registers");
+  return {std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}, file, 1};
+}
+
+void debug(const ShaderOptions& options) {
+  studies::ShaderDebugger debugger(valid_shader(options.file), registers_of(options.registers),
+                                   options.arithmetic);
+  debugger.run(std::cin, "standard input", std::cout, isatty(STDIN_FILENO) != 0);
 }
 
 CLI::App* add_part(CLI::App* shader, const Options& options, const char* name, const char* what,
@@ -89,6 +108,16 @@ void add_shader_command(CLI::App& app) {
   const std::map<std::string, Arithmetic> arithmetics{{"ieee", Arithmetic::ieee}, {"nv20", Arithmetic::nv20}};
   run->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee (default) or nv20")
       ->transform(CLI::CheckedTransformer(arithmetics));
+  CLI::App* debug_part =
+      add_part(shader, options, "debug",
+               "step one vertex or fragment through the program; commands from standard input",
+               "Example: echo 'continue' | splatscope shader debug splat.vs --registers case.json");
+  debug_part->add_option("--registers", options->registers,
+                         "constants, inputs, ... as a case of `run`, without its program");
+  debug_part->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee (default) or nv20")
+      ->transform(CLI::CheckedTransformer(arithmetics));
+  debug_part->callback([options] { debug(*options); });
+
   run->footer("Example: splatscope shader run --batch cases.jsonl --arithmetic nv20");
   run->callback([options] { run_batch(*options); });
 }

@@ -22,7 +22,7 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
       {"record"},          {"trace", "info"},      {"scene", "keys"},
       {"machine", "list"}, {"machine", "show"},    {"shader", "check"},
       {"shader", "count"}, {"shader", "assemble"}, {"shader", "disassemble"},
-      {"shader", "run"}};
+      {"shader", "debug"}, {"shader", "run"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = run_program(command);

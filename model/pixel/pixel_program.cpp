@@ -177,6 +177,7 @@ struct PixelProgram::Decoded {
   struct Step {
     isa::Instruction instruction;
     bool texture;
+    std::size_t place;  // in the program
   };
   std::vector<Step> steps;
   std::array<std::optional<Vec4>, isa::kPixelConstants> defined;
@@ -185,7 +186,10 @@ struct PixelProgram::Decoded {
   bool writes_depth = false;
   bool samples_ahead = true;
 
-  void append(const isa::Instruction& instruction);
+  std::size_t instructions = 0;
+
+  void append(const isa::Instruction& instruction, std::size_t place);
+  std::size_t execute(std::size_t at, Registers& registers, const Context& context) const;
   void use(isa::RegisterFile file, std::size_t index);
   void prepare(std::span<const Vec4> values, const FragmentBatch& batch, int count,
                Registers& registers) const;
@@ -209,10 +213,10 @@ void PixelProgram::Decoded::use(isa::RegisterFile file, std::size_t index) {
   }
 }
 
-void PixelProgram::Decoded::append(const isa::Instruction& instruction) {
+void PixelProgram::Decoded::append(const isa::Instruction& instruction, std::size_t place) {
   using enum isa::Opcode;
   const bool texture = is_texture(version, instruction.opcode);
-  steps.push_back({instruction, texture});
+  steps.push_back({instruction, texture, place});
   use(instruction.destination.file, instruction.destination.index);
   for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
     use(instruction.sources[i].file, instruction.sources[i].index);
@@ -256,9 +260,12 @@ PixelProgram::PixelProgram(const isa::Program& program, CombinerFormat format)
   decoded_->temporaries = 1;  // r0 is the result
   for (const isa::Definition& definition : program.definitions)
     decoded_->defined.at(definition.index) = definition.values;
-  for (const isa::Instruction& instruction : program.instructions)
-    if (instruction.opcode != isa::Opcode::nop && instruction.opcode != isa::Opcode::phase)
-      decoded_->append(instruction);
+  decoded_->instructions = program.instructions.size();
+  for (std::size_t i = 0; i < program.instructions.size(); ++i) {
+    const isa::Opcode opcode = program.instructions[i].opcode;
+    if (opcode != isa::Opcode::nop && opcode != isa::Opcode::phase)
+      decoded_->append(program.instructions[i], i);
+  }
 }
 
 PixelProgram::~PixelProgram() = default;
@@ -284,34 +291,63 @@ void PixelProgram::run(std::span<const Vec4> constants, FragmentBatch& batch, in
   run(constants, batch, count, sampled_ahead);
 }
 
+// One instruction or co-issued pair; returns the step after it.
+std::size_t PixelProgram::Decoded::execute(std::size_t at, Registers& registers,
+                                           const Context& context) const {
+  if (steps[at].texture) {
+    run_texture_instruction(steps[at].instruction, registers, context);
+    return at + 1;
+  }
+  // Both halves of a pair read before either writes.
+  Register copies[3], results[2];
+  const std::size_t issued = at + 1 < steps.size() && steps[at + 1].instruction.coissue ? 2 : 1;
+  for (std::size_t k = 0; k < issued; ++k) {
+    const isa::Instruction& instruction = steps[at + k].instruction;
+    std::array<Operand, 3> sources{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
+      sources[i] = read(instruction.sources[i], registers, copies[i], context.count);
+    compute(instruction, sources, context, results[k]);
+  }
+  for (std::size_t k = 0; k < issued; ++k)
+    commit(steps[at + k].instruction, format, results[k], registers, context.count);
+  return at + issued;
+}
+
 void PixelProgram::run(std::span<const Vec4> constants, FragmentBatch& batch, int count,
                        const Sampler& sampler, const BumpStages& bump) const {
   Registers registers;
   decoded_->prepare(constants, batch, count, registers);
   batch.killed = 0;
   const Context context{decoded_->version, batch, count, sampler, bump};
-  Register copies[3], results[2];
-  const auto& steps = decoded_->steps;
-  for (std::size_t at = 0; at < steps.size();) {
-    if (steps[at].texture) {
-      run_texture_instruction(steps[at++].instruction, registers, context);
-      continue;
-    }
-    // Both halves of a co-issued pair read before either writes.
-    const std::size_t issued = at + 1 < steps.size() && steps[at + 1].instruction.coissue ? 2 : 1;
-    for (std::size_t k = 0; k < issued; ++k) {
-      const isa::Instruction& instruction = steps[at + k].instruction;
-      std::array<Operand, 3> sources{};
-      for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
-        sources[i] = read(instruction.sources[i], registers, copies[i], count);
-      compute(instruction, sources, context, results[k]);
-    }
-    for (std::size_t k = 0; k < issued; ++k)
-      commit(steps[at + k].instruction, decoded_->format, results[k], registers, count);
-    at += issued;
-  }
+  for (std::size_t at = 0; at < decoded_->steps.size();) at = decoded_->execute(at, registers, context);
   for (std::size_t component = 0; component < 4; ++component)
     std::copy_n(registers.temporaries[0].component[component], count, batch.r0[component]);
+}
+
+std::vector<FragmentState> PixelProgram::trace(std::span<const Vec4> constants, FragmentBatch& batch,
+                                               const Sampler& sampler, const BumpStages& bump) const {
+  const auto registers = std::make_unique<Registers>();
+  decoded_->prepare(constants, batch, 1, *registers);
+  batch.killed = 0;
+  const Context context{decoded_->version, batch, 1, sampler, bump};
+  const auto state = [&] {
+    FragmentState result;
+    for (std::size_t i = 0; i < kStages; ++i)
+      for (std::size_t c = 0; c < 4; ++c) {
+        result.temporaries[i][c] = registers->temporaries[i].component[c][0];
+        result.textures[i][c] = registers->textures[i].component[c][0];
+      }
+    return result;
+  };
+  std::vector<FragmentState> states{state()};
+  std::size_t at = 0;
+  for (std::size_t place = 0; place < decoded_->instructions; ++place) {
+    if (at < decoded_->steps.size() && decoded_->steps[at].place == place)
+      at = decoded_->execute(at, *registers, context);
+    states.push_back(state());
+  }
+  for (std::size_t c = 0; c < 4; ++c) batch.r0[c][0] = registers->temporaries[0].component[c][0];
+  return states;
 }
 
 }  // namespace splatscope::pixel

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "model/command/commands.h"
 #include "model/isa/program.h"
@@ -38,6 +39,12 @@ struct BumpStage {
 };
 using BumpStages = std::array<BumpStage, kStages>;
 
+// Registers of one fragment between two instructions.
+struct FragmentState {
+  std::array<Vec4, kStages> temporaries{};
+  std::array<Vec4, kStages> textures{};  // t#
+};
+
 // A ps_1_1 to ps_1_4 program made ready to run. Registers keep to their ranges: c# in [-1, 1], v# in [0, 1],
 // results of arithmetic in [-1, 1] up to ps_1_3 and [-8, 8] in ps_1_4 (Direct3D 8.1 reference, "Registers -
 // ps_1_X").
@@ -62,6 +69,11 @@ class PixelProgram {
   // Any program, which samples as it runs.
   void run(std::span<const Vec4> constants, FragmentBatch& batch, int count, const Sampler& sampler,
            const BumpStages& bump = {}) const;
+
+  // Fragment 0 instruction by instruction: its registers before the first one and after each; the halves of a
+  // co-issued pair write together. The batch gets the results of run().
+  std::vector<FragmentState> trace(std::span<const Vec4> constants, FragmentBatch& batch,
+                                   const Sampler& sampler, const BumpStages& bump = {}) const;
 
  private:
   struct Decoded;

@@ -19,7 +19,7 @@ struct Registers {
   Register textures[kStages];  // t#: up to ps_1_3 what texture instructions made of them, in ps_1_4 the
                                // coordinates
   Lanes rows[3];               // of texm3x2* and texm3x3*
-  int row = 0;
+  int row = 0;                 // of them, how many there are
 };
 
 Register& register_of(Registers& registers, isa::RegisterFile file, std::size_t index);

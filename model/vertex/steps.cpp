@@ -176,8 +176,11 @@ Operand resolve_source(const StepSource& source, const Workspace& workspace, con
 
 std::vector<Step> make_steps(const isa::Program& program) {
   std::vector<Step> steps;
-  for (const isa::Instruction& instruction : program.instructions)
-    if (instruction.opcode != isa::Opcode::nop) append(instruction, steps);
+  for (std::size_t i = 0; i < program.instructions.size(); ++i) {
+    const std::size_t first = steps.size();
+    if (program.instructions[i].opcode != isa::Opcode::nop) append(program.instructions[i], steps);
+    for (std::size_t k = first; k < steps.size(); ++k) steps[k].instruction = static_cast<std::uint32_t>(i);
+  }
   return steps;
 }
 

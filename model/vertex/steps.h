@@ -54,6 +54,7 @@ struct Step {
   std::uint16_t constant_offset = 0;  // of gather_constant
   std::uint8_t source_count = 0;
   std::array<StepSource, 3> sources;
+  std::uint32_t instruction = 0;  // its place in the program
 };
 
 std::vector<Step> make_steps(const isa::Program& program);

@@ -12,6 +12,7 @@ namespace splatscope::vertex {
 struct VertexProgram::Decoded {
   Arithmetic arithmetic = Arithmetic::ieee;
   std::vector<Step> steps;
+  std::size_t instructions = 0;
   std::vector<std::pair<std::uint16_t, Vec4>> defined;  // by `def`
   std::vector<std::uint16_t> constants_read;            // addressed directly
   int temporaries = 0;                                  // r0..r(n-1) are used
@@ -59,6 +60,7 @@ VertexProgram::VertexProgram(const isa::Program& program, Arithmetic arithmetic)
     : decoded_(std::make_unique<Decoded>()) {
   decoded_->arithmetic = arithmetic;
   decoded_->steps = make_steps(program);
+  decoded_->instructions = program.instructions.size();
   for (const isa::Definition& definition : program.definitions)
     decoded_->defined.emplace_back(definition.index, definition.values);
   const auto use = [&](Place place, std::uint16_t index) {
@@ -71,6 +73,36 @@ VertexProgram::VertexProgram(const isa::Program& program, Arithmetic arithmetic)
     for (std::size_t i = 0; i < step.source_count; ++i) use(step.sources[i].place, step.sources[i].index);
     if (step.destination_place == Place::output) decoded_->written[step.destination_index] |= step.mask;
   }
+}
+
+std::vector<VertexState> VertexProgram::trace(std::span<const Vec4> constants, const InputBatch& in) const {
+  const auto workspace = std::make_unique<Workspace>();
+  const auto out = std::make_unique<OutputBatch>();
+  std::fill_n(workspace->temporaries[0][0], kTemporaries * 4 * kBatch, 0.0f);
+  std::fill_n(out->o[0][0], kOutputs * 4 * kBatch, 0.0f);
+  decoded_->prepare(constants, *workspace, *out);
+  const auto state = [&] {
+    VertexState result;
+    for (std::size_t c = 0; c < 4; ++c) {
+      for (std::size_t r = 0; r < kTemporaries; ++r)
+        result.temporaries[r][c] = workspace->temporaries[r][c][0];
+      for (std::size_t o = 0; o < kOutputs; ++o) result.outputs[o][c] = out->o[o][c][0];
+    }
+    result.address = workspace->address[0];
+    return result;
+  };
+  std::vector<VertexState> states{state()};
+  auto step = decoded_->steps.begin();
+  for (std::size_t instruction = 0; instruction < decoded_->instructions; ++instruction) {
+    for (; step != decoded_->steps.end() && step->instruction == instruction; ++step) {
+      if (step->operation == Operation::load_address || step->operation == Operation::gather_constant)
+        run_address_step(*step, *workspace, in, 1);
+      else
+        vertex::run_scalar(resolve(*step, *workspace, in, *out), decoded_->arithmetic, 0, 1);
+    }
+    states.push_back(state());
+  }
+  return states;
 }
 
 VertexProgram::~VertexProgram() = default;

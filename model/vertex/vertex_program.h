@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "model/command/commands.h"
 #include "model/isa/program.h"
@@ -24,6 +25,13 @@ struct OutputBatch {
   alignas(64) float o[kOutputs][4][kBatch];
 };
 
+// Registers of one vertex between two instructions.
+struct VertexState {
+  std::array<Vec4, 12> temporaries{};
+  std::array<Vec4, kOutputs> outputs{};
+  int address = 0;  // a0.x
+};
+
 // A vs_1_1 program made ready to run on batches of vertices. Every SIMD target gives the bits of the scalar
 // code. Outputs: components that the program does not write are 0 (oD0: 1).
 class VertexProgram {
@@ -39,6 +47,10 @@ class VertexProgram {
 
   // The same by the plain scalar interpreter that the SIMD code is checked against.
   void run_scalar(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out, int count) const;
+
+  // Vertex 0 instruction by instruction: its registers before the first one and after each. Only the
+  // registers and the components that the program has written by then mean anything.
+  std::vector<VertexState> trace(std::span<const Vec4> constants, const InputBatch& in) const;
 
  private:
   struct Decoded;

@@ -1,4 +1,4 @@
-#include "model/vertex/vertex_program.h"
+#include <benchmark/benchmark.h>
 
 #include <fstream>
 #include <memory>
@@ -6,12 +6,13 @@
 #include <sstream>
 #include <string>
 
-#include <benchmark/benchmark.h>
+#include "model/vertex/vertex_program.h"
 
 namespace splatscope::vertex {
 namespace {
 
-// The 78-slot program over 262,144 vertices (64k surfels, four vertices each); prints ns per vertex and instruction.
+// The 78-slot program over 262,144 vertices (64k surfels, four vertices each); prints ns per vertex and
+// instruction.
 void run_splat_ewa(benchmark::State& state, Arithmetic arithmetic) {
   std::ifstream file(SPLATSCOPE_SOURCE "/kernels/object_space_ewa/splat_ewa.vs");
   std::stringstream text;

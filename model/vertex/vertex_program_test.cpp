@@ -114,7 +114,8 @@ class RandomProgram {
   std::string constant_;
 };
 
-// Where `special`, half of them are zeros, denormals, infinities, NaN, powers of two or extremes, and a quarter any bits.
+// Where `special`, half of them are zeros, denormals, infinities, NaN, powers of two or extremes, and a
+// quarter any bits.
 float random_value(std::mt19937& random, bool special) {
   constexpr std::uint32_t kSpecial[] = {0x00000000, 0x80000000, 0x00000001, 0x807fffff, 0x00800000,
                                         0x7f7fffff, 0xff7fffff, 0x7f800000, 0xff800000, 0x7fc00000,

@@ -1,0 +1,118 @@
+#include "studies/shader_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+
+#include "model/error.h"
+#include "model/isa/tokens.h"
+#include "model/isa/validate.h"
+
+namespace splatscope::studies {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kConstants = 96;
+constexpr int kInputs = 16;
+
+}  // namespace
+
+ShaderCase::ShaderCase(std::string_view text, std::string_view file, int line) : file_(file), line_(line) {
+  case_ = ordered_json::parse(text, nullptr, false);
+  if (!case_.is_object()) fail("this is no JSON object, expected a case");
+  constexpr std::string_view kKeys[] = {"id",     "program",   "tokens",  "constants",
+                                        "inputs", "texcoords", "textures"};
+  for (const auto& [key, value] : case_.items())
+    if (std::ranges::find(kKeys, key) == std::end(kKeys))
+      fail(fmt::format("unknown key \"{}\", expected one of {}", key, fmt::join(kKeys, ", ")));
+}
+
+void ShaderCase::fail(std::string_view message) const {
+  throw UserError(file_, line_, message);
+}
+
+isa::Program ShaderCase::program(std::string_view name) const {
+  if (case_.contains("program") == case_.contains("tokens")) fail("expected \"program\" or \"tokens\"");
+  if (case_.contains("program")) {
+    if (!case_["program"].is_string()) fail("\"program\" is no text, expected assembly");
+    return isa::load(case_["program"].get<std::string>(), name);
+  }
+  if (!case_["tokens"].is_array()) fail("\"tokens\" is no array, expected DWORDs in hex");
+  std::vector<std::uint32_t> tokens;
+  for (const ordered_json& hex : case_["tokens"]) tokens.push_back(word_of("a token", hex));
+  isa::Program program = isa::read_tokens(tokens, name);
+  isa::validate(program);
+  return program;
+}
+
+std::uint32_t ShaderCase::word_of(std::string_view what, const ordered_json& hex) const {
+  std::uint32_t word = 0;
+  const std::string text = hex.is_string() ? hex.get<std::string>() : "";
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, word, 16);
+  if (text.empty() || stop != end || error != std::errc{})
+    fail(fmt::format("{} is {}, expected 32 bits in hex", what, hex.dump()));
+  return word;
+}
+
+Vec4 ShaderCase::vector_of(std::string_view name, const ordered_json& hex) const {
+  if (!hex.is_array() || hex.size() != 4)
+    fail(fmt::format("{} is {}, expected four words in hex", name, hex.dump()));
+  Vec4 value{};
+  for (std::size_t i = 0; i < 4; ++i) value[i] = std::bit_cast<float>(word_of(name, hex[i]));
+  return value;
+}
+
+template <typename Set>
+void ShaderCase::registers(std::string_view group, char letter, int count, Set set) const {
+  if (!case_.contains(group)) return;
+  if (!case_[group].is_object()) fail(fmt::format("\"{}\" is no object", group));
+  for (const auto& [name, value] : case_[group].items()) {
+    int index = -1;
+    const char* end = name.data() + name.size();
+    const bool number = name.size() > 1 && std::from_chars(name.data() + 1, end, index).ptr == end;
+    if (!number || name[0] != letter || index < 0 || index >= count)
+      fail(fmt::format("{} has \"{}\", expected {}0 to {}{}", group, name, letter, letter, count - 1));
+    set(static_cast<std::size_t>(index), vector_of(name, value));
+  }
+}
+
+std::vector<Vec4> ShaderCase::constants() const {
+  std::vector<Vec4> constants(kConstants);
+  registers("constants", 'c', kConstants, [&](std::size_t i, const Vec4& value) { constants[i] = value; });
+  return constants;
+}
+
+std::unique_ptr<vertex::InputBatch> ShaderCase::vertex_inputs() const {
+  auto in = std::make_unique<vertex::InputBatch>();
+  const auto set = [&](std::size_t i, const Vec4& value) {
+    for (std::size_t c = 0; c < 4; ++c) std::fill_n(in->v[i][c], vertex::kBatch, value[c]);
+  };
+  for (std::size_t i = 0; i < kInputs; ++i) set(i, {0, 0, 0, 1});
+  registers("inputs", 'v', kInputs, set);
+  return in;
+}
+
+std::unique_ptr<pixel::FragmentBatch> ShaderCase::fragment() const {
+  auto batch = std::make_unique<pixel::FragmentBatch>();
+  registers("inputs", 'v', 2, [&](std::size_t i, const Vec4& value) {
+    for (std::size_t c = 0; c < 4; ++c) (i == 0 ? batch->v0 : batch->v1)[c][0] = value[c];
+  });
+  registers("texcoords", 't', pixel::kStages, [&](std::size_t i, const Vec4& value) {
+    for (std::size_t c = 0; c < 4; ++c) batch->t[i][c][0] = value[c];
+  });
+  return batch;
+}
+
+pixel::Sampler ShaderCase::textures() const {
+  std::array<Vec4, pixel::kStages> texels{};
+  registers("textures", 't', pixel::kStages, [&](std::size_t i, const Vec4& value) { texels[i] = value; });
+  return [texels](int stage, const pixel::Lanes*, pixel::Lanes* texel, int) {
+    for (std::size_t c = 0; c < 4; ++c) texel[c][0] = texels[static_cast<std::size_t>(stage)][c];
+  };
+}
+
+}  // namespace splatscope::studies

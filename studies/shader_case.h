@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/isa/program.h"
+#include "model/pixel/pixel_program.h"
+#include "model/vertex/vertex_program.h"
+
+// Registers that a user gives a program, as JSON (docs: COMMANDS, `shader run`).
+namespace splatscope::studies {
+
+// One case. Values are binary32 bits in hex; what is not given is 0 (vertex inputs: 0, 0, 0, 1).
+class ShaderCase {
+ public:
+  // Throws UserError at `file`:`line` where the text is no case.
+  ShaderCase(std::string_view text, std::string_view file, int line);
+
+  nlohmann::ordered_json id() const { return case_.value("id", nlohmann::ordered_json(nullptr)); }
+
+  // The program in the case, validated. Its own errors are UserErrors of `name`.
+  isa::Program program(std::string_view name) const;
+
+  std::vector<Vec4> constants() const;
+  std::unique_ptr<vertex::InputBatch> vertex_inputs() const;  // in every lane
+  std::unique_ptr<pixel::FragmentBatch> fragment() const;     // in lane 0
+  pixel::Sampler textures() const;                            // constant 1x1 textures, for lane 0
+
+ private:
+  [[noreturn]] void fail(std::string_view message) const;
+  std::uint32_t word_of(std::string_view what, const nlohmann::ordered_json& hex) const;
+  Vec4 vector_of(std::string_view name, const nlohmann::ordered_json& hex) const;
+
+  // Calls set(index, value) for the registers of a group ("constants": c0, c1, ...), whose indices are below
+  // `count`.
+  template <typename Set>
+  void registers(std::string_view group, char letter, int count, Set set) const;
+
+  nlohmann::ordered_json case_;
+  std::string file_;
+  int line_;
+};
+
+}  // namespace splatscope::studies

@@ -1,0 +1,74 @@
+#include "studies/shader_debugger.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "model/error.h"
+
+namespace splatscope::studies {
+namespace {
+
+std::string session(const std::string& program, const std::string& commands,
+                    const std::string& registers = "{}") {
+  ShaderDebugger debugger(isa::load(program, "a"), ShaderCase(registers, "case", 1), Arithmetic::ieee);
+  std::istringstream in(commands);
+  std::ostringstream out;
+  debugger.run(in, "commands", out, false);
+  return out.str();
+}
+
+const std::string kProgram = "vs_1_1\nmov r0, v0\nadd r0.x, r0, r0\nmov oPos, r0\n";
+const std::string kInputs = R"({"inputs": {"v0": ["3f800000", "40000000", "0", "0"]}})";
+
+TEST(ShaderDebugger, StepsShowWhatIsReadAndWritten) {
+  EXPECT_EQ(session(kProgram, "step\n", kInputs),
+            "   2  mov r0, v0\n"
+            "        reads v0 = (1, 2, 0, 0)  3f800000 40000000 00000000 00000000\n"
+            "        r0 before = (0, 0, 0, 0)  00000000 00000000 00000000 00000000\n"
+            "        r0 after  = (1, 2, 0, 0)  3f800000 40000000 00000000 00000000\n");
+}
+
+TEST(ShaderDebugger, RunsToALineAndBack) {
+  const std::string print = "r0 = (2, 2, 0, 0)  40000000 40000000 00000000 00000000\n";
+  const std::string to_4 = session(kProgram, "run 4\nprint r0\n", kInputs);
+  EXPECT_EQ(to_4.substr(to_4.size() - print.size()), print);
+  const std::string back = session(kProgram, "run 4\nback\nprint r0\n", kInputs);
+  EXPECT_NE(back.find("r0 = (1, 2, 0, 0)  3f800000", back.find("after  = (2")), std::string::npos) << back;
+}
+
+TEST(ShaderDebugger, ContinuesUntilAWatchedRegisterChanges) {
+  EXPECT_EQ(session(kProgram, "watch oPos\nstep\ncontinue\nlist\n", kInputs).find("end of the program") ==
+                std::string::npos,
+            false);
+  const std::string stopped =
+      session("vs_1_1\nmov r1, v0\nmov r0, v0\nmov oPos, r0\n", "watch r0\ncontinue\nlist\n", kInputs);
+  EXPECT_NE(stopped.find(">   4  mov oPos, r0\n"), std::string::npos) << stopped;
+}
+
+TEST(ShaderDebugger, PairsAreOneStepAndRelativeConstantsAreFollowed) {
+  const std::string pair =
+      session("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, r0.b\n", "step 2\nlist\n");
+  EXPECT_NE(pair.find("end of the program"), std::string::npos);
+  const std::string relative =
+      session("vs_1_1\nmov a0.x, c0.x\nmov oPos, c[a0.x + 1]\n", "step 2\n",
+              R"({"constants": {"c0": ["40000000", "0", "0", "0"], "c3": ["3f800000", "0", "0", "0"]}})");
+  EXPECT_NE(relative.find("reads c3 = (1, 0, 0, 0)"), std::string::npos) << relative;
+}
+
+TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
+  const auto error_of = [](const std::string& commands) -> std::string {
+    try {
+      return session(kProgram, commands);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(error_of("step\nprint r7\n"),
+            "commands:2: the program writes no r7, expected one of its registers");
+  EXPECT_EQ(error_of("jump\n").substr(0, 32), "commands:1: 'jump' is no command");
+  EXPECT_EQ(error_of("step x\n"), "commands:1: 'x' is no number, expected 1 or more");
+}
+
+}  // namespace
+}  // namespace splatscope::studies
