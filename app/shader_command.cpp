@@ -107,15 +107,17 @@ void add_shader_command(CLI::App& app) {
   run->add_option("--batch", options->batch, "cases, one JSON object a line")->required();
   const std::map<std::string, Arithmetic> arithmetics{{"ieee", Arithmetic::ieee}, {"nv20", Arithmetic::nv20}};
   run->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee (default) or nv20")
-      ->transform(CLI::CheckedTransformer(arithmetics));
+      ->transform(CLI::CheckedTransformer(arithmetics))
+      ->option_text("ieee|nv20");
   CLI::App* debug_part =
       add_part(shader, options, "debug",
                "step one vertex or fragment through the program; commands from standard input",
-               "Example: echo 'continue' | splatscope shader debug splat.vs --registers case.json");
+               "Example: splatscope shader debug splat.vs --registers case.json < commands.txt");
   debug_part->add_option("--registers", options->registers,
                          "constants, inputs, ... as a case of `run`, without its program");
   debug_part->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee (default) or nv20")
-      ->transform(CLI::CheckedTransformer(arithmetics));
+      ->transform(CLI::CheckedTransformer(arithmetics))
+      ->option_text("ieee|nv20");
   debug_part->callback([options] { debug(*options); });
 
   run->footer("Example: splatscope shader run --batch cases.jsonl --arithmetic nv20");

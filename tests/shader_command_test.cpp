@@ -81,5 +81,19 @@ TEST(ShaderCommand, RunsABatchInEitherArithmetic) {
       2);
 }
 
+TEST(ShaderCommand, DebugTakesCommandsFromAPipe) {
+  const ScratchFolder folder;
+  folder.file("a.vs", kProgram);
+  folder.file("case.json", "{\"inputs\": {\"v1\": [\"3f800000\", \"0\", \"0\", \"0\"]}}");
+  const std::string command =
+      fmt::format("cd '{}' && printf 'run 4\\nstep\\n' | '{}' shader debug a.vs --registers case.json > out",
+                  folder.path().string(), SPLATSCOPE_PROGRAM);
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  const std::string out = text_of(folder.path() / "out");
+  EXPECT_NE(out.find("oD0 after  = (1, 0, 0, 0)  3f800000 00000000 00000000 00000000\nend of the program\n"),
+            std::string::npos)
+      << out;
+}
+
 }  // namespace
 }  // namespace splatscope::tests
