@@ -22,8 +22,7 @@ double median_weight(const kernels::ReferencePicture& reference) {
 
 }  // namespace
 
-kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance,
-                                          double edge_tolerance) {
+kernels::ReferencePicture scene_reference(const traces::Scene& scene, const Leave& leave) {
   std::vector<kernels::Surfel> surfels;
   surfels.reserve(scene.surfels.size());
   for (const traces::Surfel& surfel : scene.surfels) {
@@ -35,8 +34,9 @@ kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cut
       .prefilter = true,
       .cutoff = scene.splatting.cutoff,
       .shape = scene.splatting.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square,
-      .cutoff_tolerance = cutoff_tolerance,
-      .edge_tolerance = edge_tolerance};
+      .cutoff_tolerance = leave.cutoff_tolerance,
+      .edge_tolerance = leave.edge_tolerance,
+      .texture_length = leave.eight_bit_texels ? kernels::optimal_length(scene.splatting.cutoff) : 0};
   return kernels::ewa_reference(traces::view_of(scene.camera, scene.frame), surfels, settings);
 }
 

@@ -9,10 +9,15 @@
 // A simulated picture against the double-precision reference of the same scene.
 namespace splatscope::studies {
 
-// The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel. The
-// tolerances as in ReferenceSettings.
-kernels::ReferencePicture scene_reference(const traces::Scene& scene, double cutoff_tolerance = 0,
-                                          double edge_tolerance = 0);
+// What a picture is given leave for, beside half a step of 8 bits: see kernels::ReferenceSettings.
+struct Leave {
+  double cutoff_tolerance = 0;   // y: where the circular cutoff is decided on texels
+  double edge_tolerance = 0;     // y: where edges move to the rasteriser's grid
+  bool eight_bit_texels = false; // the value of a splat is that of an 8-bit texel, not the Gaussian's
+};
+
+// The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel.
+kernels::ReferencePicture scene_reference(const traces::Scene& scene, const Leave& leave = {});
 
 // Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the
 // summed weights are at least half of what they are in its inside. Splats reach further, but there is no

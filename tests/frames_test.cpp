@@ -1,0 +1,121 @@
+// Whole frames of the paper's scene: what the machine computes against the double-precision reference, and the two
+// schedulers against each other.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "kernels/object_space_ewa/alpha_texture.h"
+#include "studies/reference_comparison.h"
+#include "studies/run.h"
+
+namespace splatscope::studies {
+namespace {
+
+traces::Scene paper_scene(traces::Algorithm algorithm) {
+  traces::Scene scene = traces::parse_scene("", "paper.toml");
+  scene.splatting.algorithm = algorithm;
+  return scene;
+}
+
+// The same view at a quarter of the size: 64 x 64 surfels in 128 x 128 pixels.
+traces::Scene reduced_scene(traces::Algorithm algorithm) {
+  traces::Scene scene = traces::parse_scene(
+      "[surfels]\ncolumns = 64\nrows = 64\n[frame]\nwidth = 128\nheight = 128\n"
+      "[camera]\neye = [0, 17.5, 56.25]\ntarget = [0, 0, 7.5]\n",
+      "reduced.toml");
+  scene.splatting.algorithm = algorithm;
+  return scene;
+}
+
+Rendered drawn(const traces::Scene& scene, const NumberFormats& formats) {
+  RenderOptions options;
+  options.formats = formats;
+  options.record_work = false;
+  return render(traces::record(scene, formats).trace, options);
+}
+
+NumberFormats float_formats() {
+  NumberFormats formats;
+  formats.color = ColorFormat::float32;
+  formats.frame = FrameFormat::float32;
+  return formats;
+}
+
+// Half a diagonal of the 1/16-pixel grid, and a texel of the alpha texture: one pixel moves y by at most 1.
+Leave grid_and_texel(bool eight_bit_texels) {
+  return {.cutoff_tolerance = 2 * std::numbers::sqrt2 / kernels::optimal_length(1),
+          .edge_tolerance = std::numbers::sqrt2 / 32,
+          .eight_bit_texels = eight_bit_texels};
+}
+
+// The proof of the function: with float arithmetic and frame buffer only the 8-bit texture and the edges' grid are left
+// between the machine and Eq. 8.
+TEST(Frames, FloatPictureIsTheReference) {
+  const traces::Scene scene = paper_scene(traces::Algorithm::ewa_per_pixel);
+  const Frame frame = drawn(scene, float_formats()).frame;
+  const SurfaceAgreement exact = agreement(frame, scene_reference(scene, grid_and_texel(false)));
+  EXPECT_GT(exact.surface.pixels, 60000u);
+  EXPECT_EQ(0u, exact.surface.outside) << "worst " << exact.surface.worst << "/255";
+  const SurfaceAgreement with_texels = agreement(frame, scene_reference(scene, grid_and_texel(true)));
+  EXPECT_EQ(0u, with_texels.surface.outside + with_texels.fringe.outside)
+      << "worst " << with_texels.surface.worst << ", " << with_texels.fringe.worst << " /255";
+}
+
+TEST(Frames, EightBitPicturesComeNearTheReference) {
+  const kernels::ReferencePicture reference = scene_reference(paper_scene(traces::Algorithm::ewa_per_pixel));
+  for (const char* name : {"geforce4-ti4400", "radeon-8500"}) {
+    const NumberFormats formats = machine::load(name).numbers;
+    const auto decibels = [&](traces::Algorithm algorithm) {
+      return psnr(drawn(paper_scene(algorithm), formats).frame, reference);
+    };
+    const double per_surfel = decibels(traces::Algorithm::ewa_per_surfel);
+    EXPECT_GE(decibels(traces::Algorithm::ewa_per_pixel), 34) << name;
+    EXPECT_GE(per_surfel, 28) << name;
+    EXPECT_LT(decibels(traces::Algorithm::no_ewa), per_surfel - 6) << name << ": clearly worse without EWA";
+  }
+}
+
+class ReducedFrame : public testing::TestWithParam<std::tuple<const char*, traces::Algorithm>> {};
+
+TEST_P(ReducedFrame, SchedulersAgreeAndBooksAddUp) {
+  const auto& [name, algorithm] = GetParam();
+  const Machine machine = machine::load(name);
+  const Trace trace = traces::record(reduced_scene(algorithm), machine.numbers).trace;
+  const FrameRun fast = run_frame(trace, machine, Fidelity::cycle);
+  const FrameRun slow = run_frame(trace, machine, Fidelity::referee);
+  EXPECT_EQ(slow.timing->event_hash, fast.timing->event_hash);
+  EXPECT_EQ(slow.timing->cycles, fast.timing->cycles);
+  EXPECT_EQ(slow.timing->command_ends, fast.timing->command_ends);
+  EXPECT_EQ(slow.rendered.frame, fast.rendered.frame);
+  ASSERT_EQ(slow.timing->units.size(), fast.timing->units.size());
+  for (std::size_t i = 0; i < fast.timing->units.size(); ++i) {
+    const sim::UnitBooks &a = fast.timing->units[i], &b = slow.timing->units[i];
+    EXPECT_EQ(fast.timing->cycles, a.busy + a.starved + a.blocked + a.idle) << a.name;
+    EXPECT_EQ(std::tuple(b.busy, b.starved, b.blocked, b.idle), std::tuple(a.busy, a.starved, a.blocked, a.idle))
+        << a.name;
+    const auto add = [](sim::Cycle sum, const auto& by) { return sum + by.second; };
+    EXPECT_EQ(a.blocked, std::accumulate(a.blocked_by.begin(), a.blocked_by.end(), sim::Cycle{0}, add)) << a.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table1, ReducedFrame,
+                         testing::Combine(testing::Values("geforce4-ti4400", "radeon-8500"),
+                                          testing::Values(traces::Algorithm::no_ewa, traces::Algorithm::ewa_per_pixel,
+                                                          traces::Algorithm::ewa_per_surfel)));
+
+// What the frame needs of a machine does not change its picture, nor does the machine's timing.
+TEST(Frames, TimingDoesNotTouchThePicture) {
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Trace trace = traces::record(reduced_scene(traces::Algorithm::ewa_per_surfel), machine.numbers).trace;
+  Machine slower = machine;
+  machine::set(slower, "memory.banks=1");
+  machine::set(slower, "vertex.units=1");
+  const FrameRun a = run_frame(trace, machine, Fidelity::cycle), b = run_frame(trace, slower, Fidelity::cycle);
+  EXPECT_EQ(a.rendered.frame, b.rendered.frame);
+  EXPECT_EQ(a.rendered.frame, run_frame(trace, machine, Fidelity::functional).rendered.frame);
+  EXPECT_GT(b.timing->cycles, a.timing->cycles * 3 / 2);
+}
+
+}  // namespace
+}  // namespace splatscope::studies
