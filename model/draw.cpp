@@ -19,10 +19,9 @@ struct PendingTriangle {
 // The post-transform FIFO and the shading of what misses it, a batch at a time.
 class VertexStage {
  public:
-  VertexStage(const DrawBindings& bindings, int cache_entries, std::span<const int> attributes)
+  VertexStage(const DrawBindings& bindings, int cache_entries)
       : bindings_(bindings),
         cache_entries_(static_cast<std::uint32_t>(cache_entries)),
-        attributes_(attributes),
         inserted_(bindings.vertices.bytes.size() / bindings.draw.vertex_stride, 0),
         ring_(std::bit_ceil(static_cast<std::size_t>(vertex::kBatch + cache_entries + kCorners))) {}
 
@@ -57,7 +56,7 @@ class VertexStage {
   void store(std::uint32_t sequence, std::uint32_t lane) {
     primitive::ClipVertex& vertex = ring_[sequence & (ring_.size() - 1)];
     for (int c = 0; c < 4; ++c) vertex.position[c] = output_.o[vertex::oPos][c][lane];
-    for (const int attribute : attributes_) {
+    for (const int attribute : bindings_.attributes) {
       const int output = vertex::oD0 + attribute;  // both orders are D0, D1, T0, T1, ...
       for (int c = 0; c < 4; ++c) {
         const float value = output_.o[output][c][lane];
@@ -69,7 +68,6 @@ class VertexStage {
 
   const DrawBindings& bindings_;
   std::uint32_t cache_entries_;
-  std::span<const int> attributes_;
   std::vector<std::uint32_t> inserted_;
   std::vector<primitive::ClipVertex> ring_;
   std::vector<std::uint32_t> batch_;
@@ -97,10 +95,9 @@ class TriangleStage {
         fragments_(bindings, frame),
         viewport_{frame.width, frame.height} {}
 
-  std::span<const int> attributes() const { return fragments_.attributes(); }
-
   void draw(const primitive::ClipTriangle& triangle, TriangleWork& work) {
-    const primitive::Assembled assembled = primitive::assemble(triangle, viewport_, attributes(), pieces_);
+    const primitive::Assembled assembled =
+        primitive::assemble(triangle, viewport_, bindings_.attributes, pieces_);
     work.outcome = assembled.outcome;
     work.pieces = static_cast<std::uint8_t>(assembled.pieces);
     for (int piece = 0; piece < assembled.pieces; ++piece) rasterize(pieces_[piece], work);
@@ -176,7 +173,7 @@ class TriangleStage {
 void render_draw(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
                  RenderCounters& counters) {
   TriangleStage triangle_stage(bindings, options, frame, work, counters);
-  VertexStage vertex_stage(bindings, options.vertex_cache_entries, triangle_stage.attributes());
+  VertexStage vertex_stage(bindings, options.vertex_cache_entries);
   std::vector<PendingTriangle> pending;
   std::vector<TriangleWork> pending_work;
 

@@ -19,6 +19,7 @@ struct DrawBindings {
   const Texture* texture;
   const vertex::VertexProgram& vertex;
   const pixel::PixelProgram* pixel;
+  std::span<const int> attributes;  // indices into primitive::Attribute that the pixel program reads
 };
 
 // Fragments on their way through the pixel unit, in order; full batches are shaded and written.
@@ -32,16 +33,12 @@ class FragmentPipe {
                 unsigned passed, std::vector<std::uint32_t>& blocks);
   void flush();
 
-  // The attributes that the pixel program reads.
-  const std::vector<int>& attributes() const { return attributes_; }
-
  private:
   void interpolate(const raster::TriangleSetup& setup, const primitive::WindowTriangle& triangle, float dx,
                    float dy);
 
   const DrawBindings& bindings_;
   Frame& frame_;
-  std::vector<int> attributes_;
   bool samples_ = false;
   pixel::FragmentBatch batch_;
   std::array<std::size_t, pixel::kBatch> pixels_;

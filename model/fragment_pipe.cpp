@@ -17,20 +17,17 @@ float received(float value, ColorFormat format) {
 }  // namespace
 
 FragmentPipe::FragmentPipe(const DrawBindings& bindings, Frame& frame)
-    : bindings_(bindings), frame_(frame), batch_{} {
-  attributes_.push_back(primitive::kDiffuse);
-  if (bindings.pixel != nullptr) {
-    attributes_.push_back(primitive::kSpecular);
-    for (int stage = 0; stage < 4; ++stage) attributes_.push_back(primitive::kTexcoord0 + stage);
-    samples_ = bindings.texture != nullptr && (bindings.pixel->texture_stages() & 1u) != 0;
-  }
-}
+    : bindings_(bindings),
+      frame_(frame),
+      samples_(bindings.texture != nullptr && bindings.pixel != nullptr &&
+               (bindings.pixel->texture_stages() & 1u) != 0),
+      batch_{} {}
 
 void FragmentPipe::interpolate(const raster::TriangleSetup& setup, const primitive::WindowTriangle& triangle,
                                float dx, float dy) {
   const float inverse_scale = 1.0f / setup.scale.at(dx, dy);
   const float b1 = setup.weight1.at(dx, dy) * inverse_scale, b2 = setup.weight2.at(dx, dy) * inverse_scale;
-  for (const int attribute : attributes_) {
+  for (const int attribute : bindings_.attributes) {
     const Vec4 &a0 = triangle[0].attributes[attribute], &a1 = triangle[1].attributes[attribute],
                &a2 = triangle[2].attributes[attribute];
     for (int c = 0; c < 4; ++c) {

@@ -1,13 +1,39 @@
 #include "model/render.h"
 
 #include <map>
+#include <set>
 
 #include "model/draw.h"
+#include "model/error.h"
 #include "model/isa/program.h"
 #include "model/output/output.h"
 
 namespace splatscope {
 namespace {
+
+// What a draw without a pixel program reads.
+constexpr int kDiffuseOnly[] = {primitive::kDiffuse};
+
+struct LoadedPixelProgram {
+  pixel::PixelProgram program;
+  std::vector<int> attributes;
+};
+
+// The interpolated attributes that a pixel program names.
+std::vector<int> attributes_of(const isa::Program& program) {
+  std::set<int> attributes;
+  const auto add = [&](isa::RegisterFile file, int index) {
+    if (file == isa::RegisterFile::input) attributes.insert(primitive::kDiffuse + index);
+    if (file == isa::RegisterFile::texture && primitive::kTexcoord0 + index < primitive::kAttributes) {
+      attributes.insert(primitive::kTexcoord0 + index);
+    }
+  };
+  for (const isa::Instruction& instruction : program.instructions) {
+    add(instruction.destination.file, instruction.destination.index);
+    for (const isa::Source& source : instruction.sources) add(source.file, source.index);
+  }
+  return {attributes.begin(), attributes.end()};
+}
 
 // The programs of a trace, each assembled when a draw first uses it.
 class Programs {
@@ -19,10 +45,19 @@ class Programs {
     if (found != vertex_.end()) return found->second;
     return vertex_.emplace(index, vertex::VertexProgram(load(index), arithmetic_)).first->second;
   }
-  const pixel::PixelProgram& pixel(std::uint32_t index) {
+
+  const LoadedPixelProgram& pixel(std::uint32_t index) {
     const auto found = pixel_.find(index);
     if (found != pixel_.end()) return found->second;
-    return pixel_.emplace(index, pixel::PixelProgram(load(index))).first->second;
+    const isa::Program program = load(index);
+    LoadedPixelProgram loaded{pixel::PixelProgram(program), attributes_of(program)};
+    if (!loaded.program.samples_ahead()) {
+      throw UserError(
+          program.name, 0,
+          "a draw of a trace cannot kill fragments, write depth or read textures at computed coordinates; "
+          "expected a pixel program whose textures are sampled at their own coordinates");
+    }
+    return pixel_.emplace(index, std::move(loaded)).first->second;
   }
 
  private:
@@ -32,7 +67,7 @@ class Programs {
   const Trace& trace_;
   Arithmetic arithmetic_;
   std::map<std::uint32_t, vertex::VertexProgram> vertex_;
-  std::map<std::uint32_t, pixel::PixelProgram> pixel_;
+  std::map<std::uint32_t, LoadedPixelProgram> pixel_;
 };
 
 }  // namespace
@@ -51,12 +86,14 @@ Rendered render(const Trace& trace, const RenderOptions& options,
       output::normalize(rendered.frame);
     } else {
       const Draw& draw = std::get<Draw>(command);
+      const LoadedPixelProgram* pixel = draw.pixel_program ? &programs.pixel(*draw.pixel_program) : nullptr;
       const DrawBindings bindings{draw,
                                   trace.buffers[draw.vertex_buffer],
                                   trace.buffers[draw.index_buffer],
                                   draw.texture ? &trace.textures[*draw.texture] : nullptr,
                                   programs.vertex(draw.vertex_program),
-                                  draw.pixel_program ? &programs.pixel(*draw.pixel_program) : nullptr};
+                                  pixel ? &pixel->program : nullptr,
+                                  pixel ? std::span<const int>(pixel->attributes) : kDiffuseOnly};
       DrawWork work;
       work.command = static_cast<std::uint32_t>(i);
       render_draw(bindings, options, rendered.frame, work, rendered.counters);

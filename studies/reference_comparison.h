@@ -11,9 +11,9 @@ namespace splatscope::studies {
 
 // What a picture is given leave for, beside half a step of 8 bits: see kernels::ReferenceSettings.
 struct Leave {
-  double cutoff_tolerance = 0;   // y: where the circular cutoff is decided on texels
-  double edge_tolerance = 0;     // y: where edges move to the rasteriser's grid
-  bool eight_bit_texels = false; // the value of a splat is that of an 8-bit texel, not the Gaussian's
+  double cutoff_tolerance = 0;    // y: where the circular cutoff is decided on texels
+  double edge_tolerance = 0;      // y: where edges move to the rasteriser's grid
+  bool eight_bit_texels = false;  // the value of a splat is that of an 8-bit texel, not the Gaussian's
 };
 
 // The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel.

@@ -1,5 +1,5 @@
-// Whole frames of the paper's scene: what the machine computes against the double-precision reference, and the two
-// schedulers against each other.
+// Whole frames of the paper's scene: what the machine computes against the double-precision reference, and
+// the two schedulers against each other.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -49,8 +49,8 @@ Leave grid_and_texel(bool eight_bit_texels) {
           .eight_bit_texels = eight_bit_texels};
 }
 
-// The proof of the function: with float arithmetic and frame buffer only the 8-bit texture and the edges' grid are left
-// between the machine and Eq. 8.
+// The proof of the function: with float arithmetic and frame buffer only the 8-bit texture and the edges'
+// grid are left between the machine and Eq. 8.
 TEST(Frames, FloatPictureIsTheReference) {
   const traces::Scene scene = paper_scene(traces::Algorithm::ewa_per_pixel);
   const Frame frame = drawn(scene, float_formats()).frame;
@@ -92,16 +92,19 @@ TEST_P(ReducedFrame, SchedulersAgreeAndBooksAddUp) {
   for (std::size_t i = 0; i < fast.timing->units.size(); ++i) {
     const sim::UnitBooks &a = fast.timing->units[i], &b = slow.timing->units[i];
     EXPECT_EQ(fast.timing->cycles, a.busy + a.starved + a.blocked + a.idle) << a.name;
-    EXPECT_EQ(std::tuple(b.busy, b.starved, b.blocked, b.idle), std::tuple(a.busy, a.starved, a.blocked, a.idle))
+    EXPECT_EQ(std::tuple(b.busy, b.starved, b.blocked, b.idle),
+              std::tuple(a.busy, a.starved, a.blocked, a.idle))
         << a.name;
     const auto add = [](sim::Cycle sum, const auto& by) { return sum + by.second; };
-    EXPECT_EQ(a.blocked, std::accumulate(a.blocked_by.begin(), a.blocked_by.end(), sim::Cycle{0}, add)) << a.name;
+    EXPECT_EQ(a.blocked, std::accumulate(a.blocked_by.begin(), a.blocked_by.end(), sim::Cycle{0}, add))
+        << a.name;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Table1, ReducedFrame,
                          testing::Combine(testing::Values("geforce4-ti4400", "radeon-8500"),
-                                          testing::Values(traces::Algorithm::no_ewa, traces::Algorithm::ewa_per_pixel,
+                                          testing::Values(traces::Algorithm::no_ewa,
+                                                          traces::Algorithm::ewa_per_pixel,
                                                           traces::Algorithm::ewa_per_surfel)));
 
 // What the frame needs of a machine does not change its picture, nor does the machine's timing.
@@ -111,7 +114,8 @@ TEST(Frames, TimingDoesNotTouchThePicture) {
   Machine slower = machine;
   machine::set(slower, "memory.banks=1");
   machine::set(slower, "vertex.units=1");
-  const FrameRun a = run_frame(trace, machine, Fidelity::cycle), b = run_frame(trace, slower, Fidelity::cycle);
+  const FrameRun a = run_frame(trace, machine, Fidelity::cycle),
+                 b = run_frame(trace, slower, Fidelity::cycle);
   EXPECT_EQ(a.rendered.frame, b.rendered.frame);
   EXPECT_EQ(a.rendered.frame, run_frame(trace, machine, Fidelity::functional).rendered.frame);
   EXPECT_GT(b.timing->cycles, a.timing->cycles * 3 / 2);

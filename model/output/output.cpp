@@ -78,8 +78,20 @@ void write_color(const Vec4& color, std::size_t pixel, const DrawState& state, F
     Color8 source;
     for (std::size_t c = 0; c < 4; ++c) source[c] = quantize_unorm8(color[c]);
     Color8& destination = frame.colors8[pixel];
-    const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
-    destination = state.blend ? blend_unorm8(blend, source, destination) : source;
+    if (!state.blend) {
+      destination = source;
+    } else if (state.destination_factor == BlendFactor::one &&
+               (state.source_factor == BlendFactor::src_alpha || state.source_factor == BlendFactor::one)) {
+      // What splatting blends with: a whole destination under one rounding is added as it is.
+      const int factor = state.source_factor == BlendFactor::one ? 255 : source[3];
+      for (std::size_t c = 0; c < 4; ++c) {
+        destination[c] =
+            static_cast<std::uint8_t>(std::min(255, destination[c] + (2 * source[c] * factor + 255) / 510));
+      }
+    } else {
+      const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
+      destination = blend_unorm8(blend, source, destination);
+    }
     return;
   }
   Vec4& stored = frame.colors32[pixel];

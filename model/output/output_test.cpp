@@ -63,6 +63,28 @@ TEST(Output, BlendsAdditively) {
   EXPECT_EQ((Vec4{0.75f, 0.375f, 0, 0.1875f}), frame32.colors32[0]);
 }
 
+// The short way for the blending of splats gives what the rule gives.
+TEST(Output, AdditiveBlendingFollowsTheRule) {
+  Frame frame(1, 1, formats(FrameFormat::unorm8));
+  for (const BlendFactor factor : {BlendFactor::one, BlendFactor::src_alpha}) {
+    DrawState state;
+    state.blend = true;
+    state.source_factor = factor;
+    state.destination_factor = BlendFactor::one;
+    for (int s = 0; s < 256; ++s) {
+      for (int a = 0; a < 256; a += 3) {
+        const Color8 source{static_cast<std::uint8_t>(s), 255, 0, static_cast<std::uint8_t>(a)};
+        const Color8 destination{static_cast<std::uint8_t>(255 - a), static_cast<std::uint8_t>(a), 77, 200};
+        frame.colors8[0] = destination;
+        write_color({static_cast<float>(s) / 255, 1, 0, static_cast<float>(a) / 255}, 0, state, frame);
+        ASSERT_EQ(blend_unorm8({factor, BlendFactor::one, BlendEquation::add, {}}, source, destination),
+                  frame.colors8[0])
+            << s << ' ' << a;
+      }
+    }
+  }
+}
+
 TEST(Output, SaturatesInEightBits) {
   DrawState state;
   state.blend = true;
