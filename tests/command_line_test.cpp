@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "program.h"
+#include "studies/image_io.h"
 
 // What scripts and users rely on: exit status, one line on standard error, and no half-written file.
 namespace splatscope::tests {
@@ -127,6 +130,103 @@ TEST(CommandLine, WrongMachinesAreRefused) {
   expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:2: ");
   folder.file("m.toml", "[vertex]\nunits = 1000\n");
   expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:2: ");
+}
+
+constexpr const char* kSmallScene =
+    "[surfels]\ncolumns = 16\nrows = 16\n[camera]\neye = [0, 6, 14]\ntarget = [0, 0, 0]\n"
+    "[frame]\nwidth = 64\nheight = 48\n";
+
+TEST(CommandLine, RunWritesItsResults) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const Outcome outcome = run_program({"run", "small.toml", "--out", "a/b"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(outcome.error, "") << "no progress bar on a pipe";
+  for (const char* name : {"frame.png", "frame.exr", "depth.exr", "results.json"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "a/b" / name)) << name;
+  const auto results = nlohmann::json::parse(text_of(folder.path() / "a/b/results.json"));
+  EXPECT_EQ(results["machine"], "geforce4-ti4400");
+  EXPECT_EQ(results["fidelity"], "cycle");
+  const auto& frame = results["frames"].at(0);
+  EXPECT_NEAR(frame["frames_per_second"].get<double>() * frame["milliseconds"].get<double>(), 1000, 1e-6);
+  EXPECT_EQ(frame["event_hash"].get<std::string>().size(), 16u);
+  for (const auto& unit : results["units"]) {
+    const std::uint64_t booked = unit["busy"].get<std::uint64_t>() + unit["starved"].get<std::uint64_t>() +
+                                 unit["blocked"].get<std::uint64_t>() + unit["idle"].get<std::uint64_t>();
+    EXPECT_EQ(booked, frame["cycles"]) << unit;
+  }
+}
+
+TEST(CommandLine, TraceOfASceneRunsAsTheScene) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  ASSERT_EQ(run_program({"record", "small.toml", "-o", "small.trace"}, folder.path()).status, 0);
+  ASSERT_EQ(run_program({"run", "small.toml", "--out", "a"}, folder.path()).status, 0);
+  ASSERT_EQ(run_program({"run", "small.trace", "--out", "b"}, folder.path()).status, 0);
+  for (const char* name : {"frame.png", "frame.exr", "depth.exr"})
+    EXPECT_EQ(text_of(folder.path() / "a" / name), text_of(folder.path() / "b" / name)) << name;
+  const auto frames = [&](const char* run) {
+    return nlohmann::json::parse(text_of(folder.path() / run / "results.json"))["frames"];
+  };
+  EXPECT_EQ(frames("a"), frames("b"));
+}
+
+TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  folder.file("taken", "a file where a folder is wanted");
+  const auto before = folder.names();
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& part) {
+    expect_refused(run_program(arguments, folder.path()), part);
+    EXPECT_EQ(folder.names(), before);
+  };
+  refused({"run", "small.toml", "--out", "taken"}, "taken: ");
+  refused({"run", "small.toml", "--out", "taken/below"}, "taken/below: ");
+  refused({"run", "small.toml", "--fidelity", "exact"}, "--fidelity: ");
+  refused({"run", "small.toml", "--machine", "voodoo"}, "voodoo");
+  refused({"run", "small.toml", "--set", "vertex.unts=2"}, "vertex.unts");
+  refused({"run", "small.toml", "--set", "vertex.units=0"}, "vertex.units");
+  refused({"reproduce", "table7"}, "table7");
+  refused({"reproduce", "--out", "taken"}, "taken: ");
+}
+
+// A surfel that cannot be drawn is counted; one that is hard to draw is drawn, and nothing is left in the
+// frame but numbers.
+TEST(CommandLine, ExtremeSurfelsLeaveAFiniteFrame) {
+  const ScratchFolder folder;
+  folder.file(
+      "extreme.ply",
+      "ply\nformat ascii 1.0\nelement vertex 10\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float radius\nend_header\n"
+      "nan 0 0  0 0 1  1\n"  // not finite
+      "0 0 0  0 0 1  inf\n"  // not finite
+      "0 0 0  0 0 1  0\n"    // radius 0
+      "0 0 0  0 0 0  1\n"    // normal 0
+      "0 0 9  0 0 1  1\n"    // behind the eye
+      "0 0 5  0 0 1  1\n"    // on the eye
+      "0 0 4  0 1 0  3\n"    // across the near plane
+      "0 0 0  0 1 0  1\n"    // edge-on
+      "1e30 1e30 -1e30  1 1 1  1e30\n"
+      "0 0 0  1e-30 0 1e-30  1e-30\n");
+  for (const std::string algorithm : {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"}) {
+    folder.file("extreme.toml",
+                "[surfels]\nfile = \"extreme.ply\"\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n"
+                "[frame]\nwidth = 64\nheight = 48\n[splatting]\nalgorithm = \"" +
+                    algorithm + "\"\n");
+    for (const std::string numbers : {"unorm8", "float32"}) {
+      const Outcome outcome = run_program(
+          {"run", "extreme.toml", "--set", "numbers.frame=" + numbers, "--out", "out"}, folder.path());
+      ASSERT_EQ(outcome.status, 0) << outcome.error;
+      const auto skipped =
+          nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"]["skipped"];
+      EXPECT_EQ(skipped["not_finite"], 2);
+      EXPECT_EQ(skipped["zero_radius"], 1);
+      EXPECT_EQ(skipped["zero_normal"], 1);
+      for (const char* name : {"out/frame.exr", "out/depth.exr"})
+        for (const auto& pixel : studies::read_image(folder.path() / name).pixels)
+          for (float channel : pixel) ASSERT_TRUE(std::isfinite(channel)) << name << ' ' << algorithm;
+    }
+  }
 }
 
 // The user's guide holds what the program prints.

@@ -52,9 +52,11 @@ Scene load_scene(const std::filesystem::path& name_or_path) {
     }
     std::string names;
     for (const EmbeddedFile& ready : ready_scenes())
-      names += fmt::format(", {}", std::filesystem::path(ready.name).stem().string());
-    throw UserError(name_or_path.string(), 0,
-                    fmt::format("no such file, expected a scene file or one of the ready scenes{}", names));
+      names +=
+          fmt::format("{}{}", names.empty() ? "" : ", ", std::filesystem::path(ready.name).stem().string());
+    throw UserError(
+        name_or_path.string(), 0,
+        fmt::format("no such file, expected a scene file or the name of a ready scene: {}", names));
   }
   return parse_scene(read_text(name_or_path), name_or_path);
 }
