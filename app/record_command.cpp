@@ -42,7 +42,7 @@ void add_record_command(CLI::App& app, Invocation& invocation) {
   command->add_option("-o", options->out, "trace file to write")->required();
   command->add_option("--machine", options->machine, "machine whose arithmetic captures the weights")
       ->capture_default_str();
-  command->footer("Example: splatscope record checkerboard-per-surfel -o plane.trace");
+  command->footer("Example: splatscope record checkerboard-ewa-per-surfel -o plane.trace");
   command->callback([options, &invocation] { record(*options, invocation.quiet); });
 }
 

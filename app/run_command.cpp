@@ -69,7 +69,7 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
       ->allow_extra_args(false);
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command->footer(
-      "Example: splatscope run checkerboard-per-surfel --set vertex.units=4 --out out/four-units");
+      "Example: splatscope run checkerboard-ewa-per-surfel --set vertex.units=4 --out out/four-units");
   command->callback([options, &invocation] { run(*options, invocation.quiet); });
 }
 
