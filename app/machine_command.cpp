@@ -21,6 +21,17 @@ void show(const Machine& machine) {
   }
 }
 
+void show_as_markdown(const Machine& machine) {
+  std::cout << "| parameter | value | unit | allowed | what it is | where it comes from "
+               "|\n|---|---|---|---|---|---|\n";
+  for (const machine::ParameterValue& p : machine::describe(machine)) {
+    const std::string fitted = p.origin.fitted_to.empty() ? "" : " to " + p.origin.fitted_to;
+    std::cout << fmt::format("| `{}` | {} | {} | {} | {} | {}{}{}{} |\n", p.name, p.value, p.unit, p.range,
+                             p.what, p.origin.confidence, fitted, p.origin.source.empty() ? "" : ": ",
+                             p.origin.source);
+  }
+}
+
 }  // namespace
 
 void add_machine_command(CLI::App& app) {
@@ -36,7 +47,9 @@ void add_machine_command(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   one->add_option("NAME", *name, "name of a machine, or a TOML file")->required();
   one->footer("Example: splatscope machine show geforce4-ti4400");
-  one->callback([name] { show(machine::load(*name)); });
+  const auto markdown = std::make_shared<bool>(false);
+  one->add_flag("--markdown", *markdown, "as a table for the documentation");
+  one->callback([name, markdown] { (*markdown ? show_as_markdown : show)(machine::load(*name)); });
 }
 
 }  // namespace splatscope::app

@@ -229,13 +229,21 @@ TEST(CommandLine, ExtremeSurfelsLeaveAFiniteFrame) {
   }
 }
 
-// The user's guide holds what the program prints.
-TEST(Documentation, SceneKeysAreThoseOfTheProgram) {
-  const Outcome outcome = run_program({"scene", "keys"});
-  EXPECT_EQ(outcome.status, 0);
-  const std::string page = text_of(std::string(SPLATSCOPE_SOURCE) + "/docs/scene_files.md");
-  EXPECT_NE(page.find("-->\n" + outcome.out + "<!-- end -->"), std::string::npos)
-      << "docs/scene_files.md is not what `splatscope scene keys` prints: run docs/update";
+// The documentation holds what the program prints.
+TEST(Documentation, IsWhatTheProgramPrints) {
+  struct Generated {
+    const char* page;
+    std::vector<std::string> command;
+  };
+  for (const Generated& g : {Generated{"scene_files.md", {"scene", "keys"}},
+                             Generated{"machines.md", {"machine", "show", "geforce4-ti4400", "--markdown"}},
+                             Generated{"machines.md", {"machine", "show", "radeon-8500", "--markdown"}}}) {
+    const Outcome outcome = run_program(g.command);
+    EXPECT_EQ(outcome.status, 0);
+    const std::string page = text_of(std::string(SPLATSCOPE_SOURCE) + "/docs/" + g.page);
+    EXPECT_NE(page.find("-->\n" + outcome.out + "<!-- end -->"), std::string::npos)
+        << "docs/" << g.page << " is not what splatscope prints: run docs/update";
+  }
 }
 
 }  // namespace
