@@ -32,20 +32,26 @@ OIIO::ImageSpec png_spec(const Image& image) {
   return spec;
 }
 
+// Without a date of its own the library writes that of today, and no two runs would give the same file.
+OIIO::ImageSpec exr_spec(int width, int height, int channels) {
+  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::FLOAT);
+  spec.attribute("DateTime", "");
+  return spec;
+}
+
 constexpr OIIO::stride_t kPixelStride = sizeof(std::array<float, 4>);
 
 }  // namespace
 
 void write_exr(const Image& image, const fs::path& path) {
   traces::OutputFile file(path);
-  write(file.temporary(), OIIO::ImageSpec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT),
-        image.pixels.data(), kPixelStride);
+  write(file.temporary(), exr_spec(image.width, image.height, 4), image.pixels.data(), kPixelStride);
   file.commit();
 }
 
 void write_exr(const GrayImage& image, const fs::path& path) {
   traces::OutputFile file(path);
-  OIIO::ImageSpec spec(image.width, image.height, 1, OIIO::TypeDesc::FLOAT);
+  OIIO::ImageSpec spec = exr_spec(image.width, image.height, 1);
   spec.channelnames = {"Z"};
   spec.z_channel = 0;
   write(file.temporary(), spec, image.pixels.data(), sizeof(float));

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <fstream>
+#include <regex>
 
 #include "model/error.h"
 
@@ -65,6 +67,17 @@ TEST_F(ImageFile, FilesAppearWholeOrNotAtAll) {
   EXPECT_THROW(write_png(ramp(), folder_ / "none" / "a.png"), UserError);
   EXPECT_ANY_THROW(write_exr(ramp(), folder_ / "a.no-such-format"));
   EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(ImageFile, HoldsNoDate) {
+  write_exr(ramp(), folder_ / "a.exr");
+  write_png(ramp(), folder_ / "a.png");
+  for (const char* name : {"a.exr", "a.png"}) {
+    std::ifstream in(folder_ / name, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    EXPECT_FALSE(std::regex_search(bytes, std::regex("[0-9]{4}:[0-9]{2}:[0-9]{2} "))) << name;
+    EXPECT_EQ(bytes.find("tIME"), std::string::npos) << name;
+  }
 }
 
 TEST_F(ImageFile, WhatIsNoPictureIsTheUsersError) {
