@@ -34,7 +34,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   Scene scene;
   scene.name = file.stem().string();
   scene.camera = settings.camera;
-  scene.frame = {settings.width, settings.height, glm::vec3(settings.background)};
+  scene.frame = {settings.width, settings.height};
   scene.splatting = settings.splatting;
   Surfels surfels = make_surfels(settings, file.parent_path());
   scene.surfels = std::move(surfels.surfels);

@@ -31,7 +31,6 @@ struct Camera {
 struct Frame {
   int width = 0;   // pixels
   int height = 0;  // pixels
-  glm::vec3 background{};
 };
 
 // The three algorithms of Table 1 (Ren 2002, section 8).

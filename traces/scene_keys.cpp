@@ -57,8 +57,6 @@ const std::array kKeys = {
              IntegerValue{[](S& s) -> int& { return s.width; }, 512, 1, 4096}},
     SceneKey{"frame", "height", "pixels", "height of the picture",
              IntegerValue{[](S& s) -> int& { return s.height; }, 512, 1, 4096}},
-    SceneKey{"frame", "background", "r g b", "colour where no splat falls",
-             VectorValue{[](S& s) -> glm::dvec3& { return s.background; }, {0, 0, 0}, 0, 1}},
 
     SceneKey{"splatting", "algorithm", "", "row of Table 1",
              ChoiceValue{[](S& s, int i) { s.splatting.algorithm = Algorithm(i); },

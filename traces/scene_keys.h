@@ -27,7 +27,6 @@ struct SceneSettings {
   SurfelSource surfels;
   Camera camera;
   int width = 0, height = 0;
-  glm::dvec3 background{};
   Splatting splatting;
   double depth_offset = 0;  // 0: the average spacing
 };

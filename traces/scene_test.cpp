@@ -72,7 +72,6 @@ far = 20
 [frame]
 width = 7
 height = 8
-background = [0.25, 0.5, 1]
 [splatting]
 algorithm = "no-ewa"
 cutoff = 2
@@ -93,7 +92,6 @@ vertex_memory = "agp"
   EXPECT_EQ(s.camera.far, 20);
   EXPECT_EQ(s.width, 7);
   EXPECT_EQ(s.height, 8);
-  EXPECT_EQ(s.background, glm::dvec3(0.25, 0.5, 1));
   EXPECT_EQ(s.splatting.algorithm, Algorithm::no_ewa);
   EXPECT_EQ(s.splatting.cutoff, 2);
   EXPECT_EQ(s.depth_offset, 0.125);
@@ -111,7 +109,7 @@ TEST(Scene, ErrorsNameLineAndExpectation) {
   EXPECT_EQ(error_of("[frame]\nwidth = 1.5\n"),
             "s.toml:2: frame.width is 1.5, expected a whole number from 1 to 4096");
   EXPECT_EQ(error_of("[frame]\nwidht = 5\n"),
-            "s.toml:2: unknown key \"widht\" in [frame], expected one of: width, height, background");
+            "s.toml:2: unknown key \"widht\" in [frame], expected one of: width, height");
   EXPECT_EQ(error_of("[cmaera]\n"),
             "s.toml:1: unknown table \"cmaera\", expected one of: surfels, camera, frame, splatting");
   EXPECT_EQ(error_of("camera = 3\n"), "s.toml:1: \"camera\" is a value, expected a table [camera]");
