@@ -158,6 +158,7 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<co
                           static_cast<int>(layout.color.bytes_per_pixel)};
   auto& host = build.unit<Host>(bus, "host", spec.host, cycles_per_nanosecond, trace, frame);
   machine->host = &host;
+  machine->assembly = &assembly;
 
   // Host and command processor, across the boundary of the clocks.
   auto& orders = build.channel<Order>(host, command, 1);

@@ -12,6 +12,7 @@
 #include "sim/kernel/clock_domain.h"
 #include "sim/units/command/command_processor.h"
 #include "sim/units/host/host.h"
+#include "sim/units/primitive/primitive_assembly.h"
 #include "sim/units/vertex/vertex_unit.h"
 
 namespace splatscope::sim {
@@ -40,6 +41,7 @@ struct SimulatedMachine {
   std::vector<std::unique_ptr<MemoryPort>> ports;
   std::vector<UnitLeftOut> left_out;
   Host* host = nullptr;
+  PrimitiveAssembly* assembly = nullptr;
 };
 
 // Creates the units that the trace needs and connects them. `work`: one record for each Draw of the trace, in

@@ -5,7 +5,6 @@
 
 #include "model/error.h"
 #include "sim/kernel/systemc_clocks.h"
-#include "sim/units/primitive/primitive_assembly.h"
 
 namespace splatscope::sim {
 namespace {
@@ -46,12 +45,20 @@ void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit,
   result.event_hash = (std::rotl(result.event_hash, 7) ^ unit.event_hash()) * 0x9e3779b97f4a7c15u;
 }
 
+void report_progress(const SimulatedMachine& machine, const std::function<void(double)>& progress) {
+  double triangles = 0;
+  for (const DrawJob& job : machine.jobs) triangles += static_cast<double>(job.work->triangles.size());
+  machine.assembly->on_progress(
+      [triangles, &progress](std::uint64_t done) { progress(static_cast<double>(done) / triangles); });
+}
+
 }  // namespace
 
 Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& spec, Scheduler scheduler,
                 const std::function<void(double)>& progress) {
   const auto machine = build_machine(trace, work, spec, scheduler);
   const std::array<ClockDomain*, 2> domains{&machine->core, &machine->bus};
+  if (progress) report_progress(*machine, progress);
   run_on_systemc(domains);
   if (!machine->host->is_finished())
     throw ModelError("the simulated machine is deadlocked:" + dump(*machine));

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace splatscope::sim {
+namespace {
+
+constexpr std::uint64_t kReportEvery = 4096;  // triangles
+
+}  // namespace
 
 PrimitiveAssembly::PrimitiveAssembly(std::string name, Completion& completion, const Machine::Primitive& spec)
     : DrawUnit(std::move(name), completion), spec_(spec) {}
@@ -48,6 +53,7 @@ bool PrimitiveAssembly::assemble(Cycle now) {
   event(now, triangle_);
   ++triangle_;
   item_done(now);
+  if (report_ && (assembled_ + rejected_) % kReportEvery == 0) report_(assembled_ + rejected_);
   return true;
 }
 

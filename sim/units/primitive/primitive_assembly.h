@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "model/machine/machine.h"
@@ -22,7 +23,8 @@ class PrimitiveAssembly final : public DrawUnit {
   std::vector<Statistic> statistics() const override;
   std::string state() const override;
 
-  std::uint64_t triangles_done() const { return assembled_ + rejected_; }
+  // Called with the triangles done so far, every few thousand.
+  void on_progress(std::function<void(std::uint64_t)> report) { report_ = std::move(report); }
 
  private:
   std::uint64_t start(const DrawJob& job) override;
@@ -36,6 +38,7 @@ class PrimitiveAssembly final : public DrawUnit {
   std::size_t triangle_ = 0;
   std::uint32_t vertices_ = 0;  // taken and not used by a triangle yet
   Cycle free_from_ = 0;
+  std::function<void(std::uint64_t)> report_;
   std::uint64_t assembled_ = 0, rejected_ = 0, clipped_ = 0;
 };
 

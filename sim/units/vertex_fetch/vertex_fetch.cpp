@@ -189,7 +189,10 @@ Step VertexFetch::waiting(Cycle now) {
   }
   if (in_the_way_) return blocked(*in_the_way_, next);
   if (walk_from_ > now) return busy(next);
-  if (taken_ == asked_) return blocked(*index_port_->in_the_way(now, next_index_line()), next);
+  if (taken_ == asked_) {  // the last line read was let go, and the next has not been asked for
+    const Unit* unit = index_port_->in_the_way(now, next_index_line());
+    return unit ? blocked(*unit, next) : busy(now + 1);
+  }
   return blocked(index_port_->oldest_server(), next);
 }
 

@@ -1,0 +1,208 @@
+#include "sim/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "model/error.h"
+#include "sim/testing/random_trace.h"
+
+namespace splatscope::sim {
+namespace {
+
+using testing::RandomMaker;
+using testing::RandomTrace;
+
+std::uint64_t statistic(const Result& result, std::string_view unit, std::string_view name) {
+  for (const UnitStatistic& entry : result.statistics) {
+    if (entry.unit_name == unit && entry.name == name) return entry.value;
+  }
+  ADD_FAILURE() << "no statistic " << unit << "." << name;
+  return 0;
+}
+
+const UnitBooks* books_of(const Result& result, std::string_view unit) {
+  for (const UnitBooks& books : result.units) {
+    if (books.name == unit) return &books;
+  }
+  return nullptr;
+}
+
+// One draw of `triangles` triangles with three vertices and four quads each.
+RandomTrace simple_trace(int triangles) {
+  RandomTrace made = RandomMaker(1).trace();
+  made.trace.width = made.trace.height = 64;
+  made.trace.buffers = {{MemoryPlace::video, {}}, {MemoryPlace::video, {}}};
+  Draw draw;
+  draw.vertex_program = 1;
+  draw.vertex_stride = 32;
+  draw.index_buffer = 1;
+  draw.index_count = static_cast<std::uint32_t>(3 * triangles);
+  draw.state.blend = true;
+  draw.texture = 0;
+  DrawWork work;
+  work.command = 1;
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(triangles); ++i) {
+    for (std::uint32_t k = 0; k < 3; ++k) work.shaded_vertices.push_back(3 * i + k);
+    work.triangles.push_back({4, 1, 3, 1, TriangleOutcome::drawn});
+    for (std::uint16_t k = 0; k < 4; ++k) {
+      work.quads.push_back(
+          {static_cast<std::uint16_t>((i + k) % 32), static_cast<std::uint16_t>(i % 32), 15, 15, 1});
+      work.texel_blocks.push_back((7 * i + k) % 256);
+    }
+  }
+  made.trace.commands = {Clear{}, draw};
+  made.work = {work};
+  return made;
+}
+
+class RandomTraces : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomTraces, TheRefereeAgreesWithSkipAheadInEveryEventAndEveryBook) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  RandomMaker maker(GetParam());
+  const RandomTrace made = maker.trace();
+  const Machine machine = maker.machine();
+  const Result fast = simulate(made.trace, made.work, machine, Scheduler::skip_ahead);
+  const Result dull = simulate(made.trace, made.work, machine, Scheduler::referee);
+  EXPECT_EQ(fast.event_hash, dull.event_hash);
+  EXPECT_EQ(fast.cycles, dull.cycles);
+  EXPECT_EQ(fast.command_ends, dull.command_ends);
+  ASSERT_EQ(fast.units.size(), dull.units.size());
+  for (std::size_t i = 0; i < fast.units.size(); ++i) {
+    const UnitBooks& a = fast.units[i];
+    const UnitBooks& b = dull.units[i];
+    EXPECT_EQ(a.busy + a.starved + a.blocked + a.idle, fast.cycles) << a.name;
+    EXPECT_EQ(a.busy, b.busy) << a.name;
+    EXPECT_EQ(a.starved, b.starved) << a.name;
+    EXPECT_EQ(a.idle, b.idle) << a.name;
+    EXPECT_EQ(a.blocked_by, b.blocked_by) << a.name;
+  }
+  for (std::size_t i = 0; i < fast.statistics.size(); ++i) {
+    EXPECT_EQ(fast.statistics[i].value, dull.statistics[i].value) << fast.statistics[i].name;
+  }
+}
+
+TEST_P(RandomTraces, EveryItemOfTheWorkIsDoneOnce) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  RandomMaker maker(GetParam());
+  const RandomTrace made = maker.trace();
+  const Result result = simulate(made.trace, made.work, maker.machine());
+  std::uint64_t vertices = 0, triangles = 0, quads = 0;
+  for (const DrawWork& work : made.work) {
+    vertices += work.shaded_vertices.size();
+    triangles += work.triangles.size();
+    quads += work.quads.size();
+  }
+  EXPECT_EQ(statistic(result, "vertex_fetch", "vertices"), vertices);
+  EXPECT_EQ(statistic(result, "vertex_fetch", "indices"), 3 * triangles);
+  EXPECT_EQ(statistic(result, "primitive", "assembled") + statistic(result, "primitive", "rejected"),
+            triangles);
+  EXPECT_EQ(statistic(result, "raster", "quads"), quads);
+  EXPECT_EQ(result.command_ends.size(), made.trace.commands.size());
+  EXPECT_TRUE(std::is_sorted(result.command_ends.begin(), result.command_ends.end()));
+  if (!result.command_ends.empty()) {
+    EXPECT_EQ(result.command_ends.back(), result.cycles);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomTraces, ::testing::Range(1u, 51u));
+
+TEST(Simulate, TheSameRunTwiceInAProcessIsTheSame) {
+  const RandomTrace made = simple_trace(200);
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Result first = simulate(made.trace, made.work, machine);
+  for (int i = 0; i < 3; ++i) {
+    const Result again = simulate(made.trace, made.work, machine);
+    EXPECT_EQ(again.event_hash, first.event_hash);
+    EXPECT_EQ(again.cycles, first.cycles);
+  }
+  EXPECT_GT(first.cycles, 0u);
+  EXPECT_NEAR(first.seconds, static_cast<double>(first.cycles) / 275e6, 1e-6 * first.seconds);
+}
+
+TEST(Simulate, VertexBoundDrawsTakeTheScheduledClocksAVertex) {
+  const Machine machine = machine::load("geforce4-ti4400");
+  const RandomTrace small = simple_trace(200), large = simple_trace(1200);
+  const Result a = simulate(small.trace, small.work, machine);
+  const Result b = simulate(large.trace, large.work, machine);
+  const isa::Program program = isa::load(small.trace.programs[1].text, small.trace.programs[1].name);
+  const double expected = 3000 * clocks_per_vertex(program, machine.vertex) / machine.vertex.units;
+  // Start and end of the draw cancel, but for a group of the one unit that the other does not have.
+  EXPECT_NEAR(static_cast<double>(b.cycles - a.cycles), expected, 60);
+}
+
+TEST(Simulate, UnitsThatNoDrawNeedsAreLeftOut) {
+  RandomTrace made = simple_trace(10);
+  Draw& draw = std::get<Draw>(made.trace.commands[1]);
+  const Machine machine = machine::load("radeon-8500");
+  const Result all = simulate(made.trace, made.work, machine);
+  EXPECT_NE(books_of(all, "texture"), nullptr);
+  ASSERT_EQ(all.units_left_out.size(), 1u);
+  EXPECT_EQ(all.units_left_out[0].name, "agp");
+
+  draw.state.color_write = false;
+  for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
+  made.work[0].texel_blocks.clear();
+  const Result depth_only = simulate(made.trace, made.work, machine);
+  for (const char* name : {"texture", "pixel", "blend", "agp"})
+    EXPECT_EQ(books_of(depth_only, name), nullptr) << name;
+  EXPECT_EQ(depth_only.units_left_out.size(), 4u);
+  EXPECT_NE(books_of(depth_only, "depth"), nullptr);
+
+  draw.state.depth_test = draw.state.depth_write = false;
+  EXPECT_EQ(books_of(simulate(made.trace, made.work, machine), "depth"), nullptr);
+}
+
+TEST(Simulate, ASecondVertexUnitHalvesAVertexBoundDraw) {
+  const RandomTrace made = simple_trace(1200);
+  Machine machine = machine::load("geforce4-ti4400");
+  machine.vertex.units = 1;
+  const Result one = simulate(made.trace, made.work, machine);
+  machine.vertex.units = 2;
+  const Result two = simulate(made.trace, made.work, machine);
+  const auto draw_cycles = [](const Result& result) {
+    return static_cast<double>(result.command_ends[1] - result.command_ends[0]);
+  };
+  EXPECT_NEAR(draw_cycles(one) / draw_cycles(two), 2.0, 0.1);  // fill and drain do not halve
+}
+
+TEST(Simulate, VerticesOverAgpTakeTheBus) {
+  RandomTrace made = simple_trace(400);
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Result video = simulate(made.trace, made.work, machine);
+  made.trace.buffers[0].place = MemoryPlace::agp;
+  std::get<Draw>(made.trace.commands[1]).vertex_stride = 256;
+  const Result agp = simulate(made.trace, made.work, machine);
+  EXPECT_GT(agp.cycles, video.cycles);
+  // 1200 vertices of 256 bytes at 16 bytes a bus clock of 4.125 core cycles.
+  EXPECT_EQ(statistic(agp, "agp", "data_clocks"), 1200u * 16u);
+  EXPECT_GE(agp.cycles, static_cast<Cycle>(1200 * 16 * 4.125));
+}
+
+TEST(Simulate, WorkThatDoesNotFitTheTraceIsABug) {
+  RandomTrace made = simple_trace(10);
+  const Machine machine;
+  EXPECT_THROW(simulate(made.trace, {}, machine), ModelError);
+  made.work[0].quads.pop_back();
+  EXPECT_THROW(simulate(made.trace, made.work, machine), ModelError);
+}
+
+TEST(Simulate, AProgramThatDoesNotLoadIsAUsersError) {
+  RandomTrace made = simple_trace(10);
+  made.trace.programs[1].text = "vs_1_1\nmoo r0, v0\n";
+  EXPECT_THROW(simulate(made.trace, made.work, Machine{}), UserError);
+}
+
+TEST(Simulate, ProgressGrowsToOne) {
+  const RandomTrace made = simple_trace(10000);
+  std::vector<double> seen;
+  simulate(made.trace, made.work, machine::load("geforce4-ti4400"), Scheduler::skip_ahead,
+           [&](double done) { seen.push_back(done); });
+  EXPECT_GE(seen.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  EXPECT_EQ(seen.back(), 1.0);
+}
+
+}  // namespace
+}  // namespace splatscope::sim

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "model/machine/machine.h"
+#include "model/work/work.h"
+
+// Small random traces with work that fits them, and machines with random depths and timings. No pictures: the
+// timing simulation looks at no value of a buffer or a texture.
+namespace splatscope::sim::testing {
+
+struct RandomTrace {
+  Trace trace;
+  std::vector<DrawWork> work;
+};
+
+class RandomMaker {
+ public:
+  explicit RandomMaker(unsigned seed) : random_(seed) {}
+
+  RandomTrace trace() {
+    RandomTrace made;
+    made.trace.width = number(1, 64);
+    made.trace.height = number(1, 64);
+    made.trace.programs = {
+        {"move.vs", "vs_1_1\nmov oPos, v0\nmov oD0, v1\n"},
+        {"chain.vs",
+         "vs_1_1\ndp4 r0.x, v0, c0\nrsq r1.x, r0.x\nmul r2, v1, c1\nrcp r1.y, r1.x\n"
+         "mad r3, r2, r1.y, v1\nrcp r4.w, r0.x\nmul r5, v1, c2\nmul oD0, r5, r4.w\nm4x4 oPos, r3, c4\n"},
+        {"color.ps", "ps_1_1\ntex t0\nmul r0, t0, v0\n"}};
+    made.trace.textures = {{64, 64, {}}};
+    const auto place = [&] { return chance(0.3) ? MemoryPlace::agp : MemoryPlace::video; };
+    made.trace.buffers = {{place(), {}}, {place(), {}}};
+    if (chance(0.8)) made.trace.commands.emplace_back(Clear{});
+    const auto draws = number(0, 3);
+    const bool has_color = chance(0.8);
+    for (std::uint32_t i = 0; i < draws; ++i) add_draw(made, has_color);
+    if (chance(0.3)) made.trace.commands.emplace_back(NormalizeOnHost{});
+    return made;
+  }
+
+  Machine machine() {
+    Machine made;
+    made.vertex = {int(number(1, 3)), int(number(1, 4)), int(number(1, 4)),
+                   int(number(1, 5)), int(number(1, 3)), chance(0.5),
+                   chance(0.5),       int(number(0, 2)), 18,
+                   int(number(1, 4))};
+    made.fetch = {32 << number(0, 1), 4 << number(0, 2), int(number(1, 8)), int(number(1, 4)),
+                  int(number(1, 3))};
+    made.primitive = {int(number(1, 2)), int(number(0, 5)), int(number(1, 8))};
+    made.setup = {int(number(1, 4)), int(number(1, 12)), int(number(1, 8))};
+    made.raster = {int(number(1, 2)), int(number(1, 8)), int(number(1, 8))};
+    made.depth = {4 << number(0, 3), 1 << number(0, 2), int(number(1, 16)),
+                  int(number(1, 8)), int(number(1, 8)), chance(0.5)};
+    made.texture = {4 << number(0, 4),  1 << number(0, 2), 16,
+                    8 << number(0, 1),  int(number(1, 4)), int(number(1, 32)),
+                    int(number(1, 12)), int(number(1, 8))};
+    made.pixel = {int(number(1, 2)), int(number(1, 2)), int(number(1, 8)), int(number(1, 8))};
+    made.blend = {4 << number(0, 3), 1 << number(0, 2), int(number(1, 16))};
+    made.memory.channels = 1 << number(0, 2);
+    made.memory.interleave_bytes = 64 << number(0, 2);
+    made.memory.banks = 1 << number(0, 3);
+    made.memory.precharge_clocks = int(number(0, 8));
+    made.memory.activate_clocks = int(number(0, 8));
+    made.memory.cas_clocks = int(number(1, 8));
+    made.memory.row_active_clocks = int(number(0, 16));
+    made.memory.turnaround_clocks = int(number(0, 4));
+    made.memory.request_queue = int(number(1, 8));
+    made.memory.schedule_queue = int(number(1, 16));
+    made.memory.bypass_limit = int(number(0, 8));
+    made.memory.return_latency = int(number(1, 80));
+    made.agp.latency_nanoseconds = number(0, 500);
+    made.agp.queue = int(number(1, 8));
+    made.host.command_nanoseconds = number(0, 2000);
+    made.host.uncached_read_nanoseconds = number(1, 40);
+    if (chance(0.2)) made.numbers.frame = FrameFormat::float32;  // lines over several memory channels
+    if (chance(0.2)) made.numbers.depth = DepthFormat::z16;
+    return made;
+  }
+
+ private:
+  std::uint32_t number(std::uint32_t least, std::uint32_t most) {
+    return std::uniform_int_distribution<std::uint32_t>(least, most)(random_);
+  }
+  bool chance(double probability) { return std::bernoulli_distribution(probability)(random_); }
+
+  void add_draw(RandomTrace& made, bool has_color) {
+    Draw draw;
+    draw.vertex_program = number(0, 1);
+    draw.vertex_stride = number(1, 20) * 4;
+    draw.first_index = 3 * number(0, 20);
+    draw.index_count = 3 * number(0, 80);
+    draw.index_buffer = 1;
+    draw.state = {chance(0.7), chance(0.7),      has_color && chance(0.7),
+                  chance(0.7), BlendFactor::one, BlendFactor::one};
+    if (chance(0.7)) draw.pixel_program = 2;
+    if (chance(0.7)) draw.texture = 0;
+    DrawWork work;
+    work.command = static_cast<std::uint32_t>(made.trace.commands.size());
+    for (std::uint32_t i = 0; i < draw.index_count / 3; ++i) add_triangle(made.trace, draw, work);
+    made.trace.commands.emplace_back(draw);
+    made.work.push_back(work);
+  }
+
+  void add_triangle(const Trace& trace, const Draw& draw, DrawWork& work) {
+    TriangleWork triangle;
+    triangle.new_vertices = static_cast<std::uint8_t>(number(0, 3));
+    for (std::uint32_t i = 0; i < triangle.new_vertices; ++i) work.shaded_vertices.push_back(number(0, 200));
+    triangle.pieces = static_cast<std::uint8_t>(chance(0.8) ? 1 : number(0, 3));
+    if (triangle.pieces == 0) {
+      triangle.outcome = TriangleOutcome::behind_near;
+    } else {
+      triangle.quad_count = number(0, 12);
+      triangle.tile_count = number(0, 5);
+    }
+    for (std::uint32_t i = 0; i < triangle.quad_count; ++i) {
+      QuadWork quad;
+      quad.x = static_cast<std::uint16_t>(number(0, (trace.width - 1) / 2));
+      quad.y = static_cast<std::uint16_t>(number(0, (trace.height - 1) / 2));
+      quad.covered = static_cast<std::uint8_t>(number(1, 15));
+      quad.passed = static_cast<std::uint8_t>(quad.covered & number(0, 15));
+      const bool sampled = draw.texture && draw.state.color_write && quad.passed != 0;
+      quad.texel_block_count = static_cast<std::uint8_t>(sampled ? number(1, 4) : 0);
+      for (int block = 0; block < quad.texel_block_count; ++block)
+        work.texel_blocks.push_back(number(0, 255));
+      work.quads.push_back(quad);
+    }
+    work.triangles.push_back(triangle);
+  }
+
+  std::mt19937 random_;
+};
+
+}  // namespace splatscope::sim::testing
