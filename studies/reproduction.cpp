@@ -108,7 +108,10 @@ void reproduce(const std::vector<std::string>& names, const std::filesystem::pat
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Json results = {{"table1", json_of(table)}, {"host", {{"seconds", seconds}}}};
   traces::write_file(folder / "results.json", results.dump(1) + "\n");
-  fmt::print("{:.1f} s; results.json, report.html and pictures in {}\n", seconds, folder.string());
+  fmt::print(
+      "{:.1f} s, the last frame at {:.1f} M simulated cycles a second; results.json, report.html and "
+      "pictures in {}\n",
+      seconds, table.rows.back().cycles_per_host_second / 1e6, folder.string());
 }
 
 }  // namespace splatscope::studies

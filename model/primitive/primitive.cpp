@@ -1,5 +1,6 @@
 #include "model/primitive/primitive.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -100,10 +101,14 @@ Assembled assemble(const ClipTriangle& triangle, const Viewport& viewport, std::
                           {-1, 0, 0, guard_x, 0},
                           {0, 1, 0, guard_y, 0},
                           {0, -1, 0, guard_y, 0}};
-  Polygon polygon{triangle[0], triangle[1], triangle[2]};
-  polygon.count = 3;
+  const auto cuts = [&](const Plane& plane) { return count_outside(triangle, plane) > 0; };
+  if (std::ranges::none_of(planes, cuts)) {  // nearly every triangle
+    for (std::size_t i = 0; i < 3; ++i) out[0][i] = project(triangle[i], viewport);
+    return {TriangleOutcome::drawn, 1};
+  }
+  Polygon polygon{{triangle[0], triangle[1], triangle[2]}, 3};
   for (const Plane& plane : planes) {
-    if (count_outside(triangle, plane) > 0) polygon = clip(polygon, plane, used);
+    if (cuts(plane)) polygon = clip(polygon, plane, used);
   }
   if (polygon.count < 3) return {TriangleOutcome::outside_frustum, 0};
 
