@@ -265,7 +265,8 @@ class Parser {
         source.modifier != none)
       lexer_.fail(where, fmt::format("'_{}' is not a source modifier here", suffix));
     const bool divides = found->second == dz || found->second == dw;
-    if (divides && source.negate) lexer_.fail(where, fmt::format("'_{}' cannot be combined with negation", suffix));
+    if (divides && source.negate)
+      lexer_.fail(where, fmt::format("'_{}' cannot be combined with negation", suffix));
     source.modifier = found->second;
   }
 

@@ -20,6 +20,7 @@ struct Version {
 };
 
 enum class Opcode : std::uint8_t {
+  // Vertex programs, and of them the arithmetic that pixel programs share.
   nop,
   mov,
   add,
@@ -38,6 +39,7 @@ enum class Opcode : std::uint8_t {
   logp,
   lit,
   dst,
+  // Macros: more than one slot each.
   exp,
   log,
   frc,
@@ -45,12 +47,14 @@ enum class Opcode : std::uint8_t {
   m4x3,
   m3x4,
   m3x3,
-  m3x2,  // macros: more than one slot each
+  m3x2,
+  // Pixel programs: arithmetic.
   lrp,
   cnd,
   cmp,
   bem,
-  phase,  // pixel programs: arithmetic
+  phase,
+  // Texture addressing, ps_1_1 to ps_1_3.
   tex,
   texcoord,
   texkill,
@@ -68,10 +72,11 @@ enum class Opcode : std::uint8_t {
   texm3x3vspec,
   texm3x3,
   texdp3,
-  texdp3tex,  // texture addressing, ps_1_1 to ps_1_3
+  texdp3tex,
+  // Texture addressing, ps_1_4.
   texld,
   texcrd,
-  texdepth,  // texture addressing, ps_1_4
+  texdepth,
 };
 
 enum class RegisterFile : std::uint8_t {

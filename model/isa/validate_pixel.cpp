@@ -154,7 +154,7 @@ class PixelValidator {
         if (source.file == destination.file && source.index == destination.index)
           reject(program_, instruction, "the destination of cmp cannot be one of its sources before ps_1_4");
     }
-    if (instruction.opcode == bem && (destination.mask != 0x3 || (has_phase_ && !in_phase_1())))
+    if (instruction.opcode == bem && (destination.mask != 0x3 || !in_phase_1()))
       reject(program_, instruction, "bem writes .rg, in the first phase");
   }
 

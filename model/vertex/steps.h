@@ -22,7 +22,7 @@ enum class Operation : std::uint8_t {
   minimum,
   maximum,
   less,
-  greater_equal,  // SIMD
+  greater_equal,
   reciprocal,
   reciprocal_sqrt,
   expp,
