@@ -45,16 +45,6 @@ class Allocator {
   std::uint64_t next_ = 0;
 };
 
-std::uint64_t clocks_of(const isa::Program& program, const Machine::Pixel& spec) {
-  const auto arithmetic = std::count_if(
-      program.instructions.begin(), program.instructions.end(), [&](const isa::Instruction& instruction) {
-        const isa::OpcodeInfo* info = isa::find_opcode(program.version, instruction.opcode);
-        return info && info->unit == isa::OpcodeClass::arithmetic;
-      });
-  const auto rate = static_cast<std::uint64_t>(spec.instructions_per_clock);
-  return std::max<std::uint64_t>((static_cast<std::uint64_t>(arithmetic) + rate - 1) / rate, 1);
-}
-
 isa::Program load(const Trace& trace, std::uint32_t program) {
   return isa::load(trace.programs[program].text, trace.programs[program].name);
 }
@@ -87,6 +77,16 @@ void count_work(DrawJob& job) {
 }
 
 }  // namespace
+
+std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec) {
+  const auto arithmetic = std::count_if(
+      program.instructions.begin(), program.instructions.end(), [&](const isa::Instruction& instruction) {
+        const isa::OpcodeInfo* info = isa::find_opcode(program.version, instruction.opcode);
+        return info && info->unit == isa::OpcodeClass::arithmetic;
+      });
+  const auto rate = static_cast<std::uint64_t>(spec.instructions_per_clock);
+  return std::max<std::uint64_t>((static_cast<std::uint64_t>(arithmetic) + rate - 1) / rate, 1);
+}
 
 MemoryLayout lay_out(const Trace& trace, const Machine& machine) {
   MemoryLayout layout;
@@ -136,7 +136,8 @@ PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, 
         schedule_numbers.try_emplace(draw->vertex_program, prepared.schedules.size());
     if (is_new) prepared.schedules.push_back(schedule_of(load(trace, draw->vertex_program), machine.vertex));
     job.vertex_program = found->second;
-    if (draw->pixel_program) job.pixel_clocks = clocks_of(load(trace, *draw->pixel_program), machine.pixel);
+    if (draw->pixel_program)
+      job.pixel_clocks = clocks_per_quad(load(trace, *draw->pixel_program), machine.pixel);
     job.vertex_address = layout.buffers[draw->vertex_buffer];
     job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
     if (draw->texture) job.texture_address = layout.textures[*draw->texture];

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "model/command/commands.h"
+#include "model/isa/program.h"
 #include "model/machine/machine.h"
 #include "model/work/work.h"
 #include "sim/units/draw_unit.h"
@@ -32,6 +34,10 @@ struct Needs {
   bool texture = false;  // some draw that writes colour samples a texture
 };
 Needs needs_of(const Trace& trace);
+
+// Clocks of a quad in the pixel unit: its arithmetic instructions at `pixel.instructions_per_clock`, at
+// least 1.
+std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec);
 
 // The schedules of the vertex programs that the draws use, and the draws with their work, in order.
 // UserError where a program does not load, ModelError where trace and work do not fit together.

@@ -12,6 +12,7 @@
 #include "model/isa/opcode.h"
 #include "model/isa/tokens.h"
 #include "model/machine/machine.h"
+#include "sim/draw_jobs.h"
 #include "sim/units/vertex/schedule.h"
 
 namespace splatscope::studies {
@@ -90,9 +91,13 @@ std::string describe_shader(const isa::Program& program) {
   for (const std::size_t place : analysis.critical_path)
     text += fmt::format(" {}", program.instructions[place].line);
   text += '\n';
-  if (program.version.kind == isa::ShaderKind::vertex)
-    for (const std::string_view name : machine::built_in_names())
-      text += describe_on_machine(program, machine::load(std::string(name)));
+  for (const std::string_view name : machine::built_in_names()) {
+    const Machine machine = machine::load(std::string(name));
+    text += program.version.kind == isa::ShaderKind::vertex
+                ? describe_on_machine(program, machine)
+                : fmt::format("{}: {} clocks a quad in the pixel unit\n", machine.name,
+                              sim::clocks_per_quad(program, machine.pixel));
+  }
   text += fmt::format("\n{:>4} {:>5}  {:<44} {}\n", "line", "slots", "instruction", "live after");
   for (std::size_t i = 0; i < program.instructions.size(); ++i) {
     const isa::Instruction& instruction = program.instructions[i];

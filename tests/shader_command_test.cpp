@@ -38,6 +38,14 @@ TEST(ShaderCommand, CheckSaysWhatIsDeadAndWhatItCosts) {
   EXPECT_NE(outcome.out.find("radeon-8500: "), std::string::npos);
 }
 
+TEST(ShaderCommand, CheckCountsTheClocksOfAPixelProgram) {
+  const ScratchFolder folder;
+  folder.file("a.ps", "ps_1_1\ntex t0\nmul r0, t0, v0\nadd r0, r0, v1\nmul r0, r0, v0\n");
+  const Outcome outcome = run_program({"shader", "check", "a.ps"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NE(outcome.out.find("geforce4-ti4400: 2 clocks a quad"), std::string::npos) << outcome.out;
+}
+
 TEST(ShaderCommand, ABrokenRuleIsExit2WithItsPlaceAndNoFile) {
   const ScratchFolder folder;
   folder.file("a.vs", "vs_1_1\nadd r0, c0, c1\nmov oPos, v0\n");
