@@ -114,14 +114,18 @@ class RandomProgram {
   std::string constant_;
 };
 
-// Where `special`, half of them are zeros, denormals, infinities, NaN, powers of two or extremes, and a
-// quarter any bits.
-float random_value(std::mt19937& random, bool special) {
+enum class Values { special, moderate, finite };
+
+// special: half of them zeros, denormals, infinities, NaN, powers of two or extremes, and a quarter any bits;
+// moderate: -4 to 4; finite: any exponent, so sums and products overflow and underflow.
+float random_value(std::mt19937& random, Values values) {
   constexpr std::uint32_t kSpecial[] = {0x00000000, 0x80000000, 0x00000001, 0x807fffff, 0x00800000,
                                         0x7f7fffff, 0xff7fffff, 0x7f800000, 0xff800000, 0x7fc00000,
                                         0xffc12345, 0x7f800001, 0x3f800000, 0xbf800000, 0x3f7fffff,
                                         0x40000000, 0x43000000, 0xc3160000};
-  switch (special ? random() % 4 : 2) {
+  if (values == Values::finite)
+    return std::bit_cast<float>(static_cast<std::uint32_t>(random()) & 0xff7fffffu);
+  switch (values == Values::special ? random() % 4 : 2) {
     case 0:
       return std::bit_cast<float>(kSpecial[random() % std::size(kSpecial)]);
     case 1:
@@ -140,10 +144,10 @@ void compare_simd_targets_with_scalar(Arithmetic arithmetic) {
     const VertexProgram program(isa::assemble(text, "random"), arithmetic);
     Batches batch;
     for (auto& component : batch.in->v[0])
-      for (float& value : component) value = random_value(random, trial % 2 == 0);
+      for (float& value : component) value = random_value(random, static_cast<Values>(trial % 3));
     std::vector<Vec4> constants(8);
     for (Vec4& constant : constants)
-      for (float& value : constant) value = random_value(random, trial % 2 == 0);
+      for (float& value : constant) value = random_value(random, static_cast<Values>(trial % 3));
     const auto scalar = std::make_unique<OutputBatch>();
     const int count = 1 + static_cast<int>(random() % kBatch);
     program.run_scalar(constants, *batch.in, *scalar, count);
