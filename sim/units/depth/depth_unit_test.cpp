@@ -1,0 +1,91 @@
+#include "sim/units/depth/depth_unit.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/testing/bench.h"
+
+namespace splatscope::sim {
+namespace {
+
+using testing::Timed;
+
+struct DepthBench {
+  testing::Bench bench;
+  testing::Source<std::uint32_t> source;
+  DepthUnit depth;
+  testing::Sink<std::uint32_t> sink;
+  Channel<std::uint32_t> in, out;
+  testing::TestMemory memory;
+
+  DepthBench(testing::TestDraw& draw, const Machine::Depth& spec, bool cleared)
+      : source(quads(draw)),
+        depth("depth", bench.completion(), spec, FrameLines::of(512, 512, 4), 1),
+        in((bench.add(source), bench.add(depth), "in"), source, depth, 8),
+        out((bench.add(sink), "out"), depth, sink, 8),
+        memory(bench, depth, 40) {
+    source.connect(in);
+    depth.connect(in, &out, memory.port, 0);
+    sink.connect(out);
+    depth.clear(cleared);
+    bench.begin(draw.prepare(), {&depth});
+    bench.run();
+  }
+  static Timed<std::uint32_t> quads(const testing::TestDraw& draw) {
+    Timed<std::uint32_t> items;
+    for (std::uint32_t i = 0; i < draw.work.quads.size(); ++i) items.emplace_back(0, i);
+    return items;
+  }
+  std::vector<std::pair<std::uint32_t, bool>> traffic() const {
+    std::vector<std::pair<std::uint32_t, bool>> lines;
+    for (const auto& [at, request] : memory.memory.requests())
+      lines.emplace_back(request.address / 64, request.write);
+    return lines;
+  }
+};
+
+TEST(DepthUnit, QuadsOfAnAbsentLineWaitForItAndThoseThatFailedEndHere) {
+  testing::TestDraw draw;
+  draw.add_quad(0, 0);
+  draw.add_quad(1, 1, {}, 0);  // the same 4x4 pixels; fails the test
+  draw.add_quad(1, 0);
+  const DepthBench run(draw, {32, 4, 8, 4, 8, true}, false);
+  EXPECT_EQ(run.sink.taken(), (Timed<std::uint32_t>{{43, 0u}, {45, 2u}}));
+  EXPECT_EQ(run.traffic(), (std::vector<std::pair<std::uint32_t, bool>>{{0, false}}));
+  EXPECT_EQ(run.bench.done_at(), 45u);
+}
+
+TEST(DepthUnit, LinesThatAFastClearMarkedAreNotRead) {
+  testing::TestDraw draw;
+  draw.add_quad(0, 0);
+  const DepthBench run(draw, {32, 4, 8, 4, 8, true}, true);
+  EXPECT_EQ(run.sink.taken(), (Timed<std::uint32_t>{{3, 0u}}));
+  EXPECT_TRUE(run.traffic().empty());
+}
+
+TEST(DepthUnit, AWrittenLineGoesBackWhenItsPlaceIsTakenAndIsReadAgain) {
+  testing::TestDraw draw;
+  for (const int x : {0, 2, 4, 6, 8, 0}) draw.add_quad(x, 0);  // lines 0 1 2 3 4 0 in one set of four
+  const DepthBench run(draw, {4, 4, 8, 4, 8, true}, true);
+  EXPECT_EQ(run.traffic(), (std::vector<std::pair<std::uint32_t, bool>>{{0, true}, {1, true}, {0, false}}));
+}
+
+TEST(DepthUnit, ReadOnlyLinesAreNotWrittenBack) {
+  testing::TestDraw draw;
+  draw.draw.state.depth_write = false;
+  for (const int x : {0, 2, 4, 6, 8}) draw.add_quad(x, 0);
+  const DepthBench run(draw, {4, 4, 8, 4, 8, true}, false);
+  for (const auto& [line, write] : run.traffic()) EXPECT_FALSE(write) << line;
+  EXPECT_EQ(run.traffic().size(), 5u);
+}
+
+TEST(DepthUnit, DrawsWithoutDepthPassThrough) {
+  testing::TestDraw draw;
+  draw.draw.state.depth_test = draw.draw.state.depth_write = false;
+  draw.add_quad(0, 0);
+  const DepthBench run(draw, {32, 4, 8, 4, 8, true}, false);
+  EXPECT_EQ(run.sink.taken(), (Timed<std::uint32_t>{{3, 0u}}));
+  EXPECT_TRUE(run.traffic().empty());
+}
+
+}  // namespace
+}  // namespace splatscope::sim
