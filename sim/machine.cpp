@@ -152,11 +152,11 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<co
     memory.push_back(&build.unit<MemoryChannel>(core, "memory" + std::to_string(i), spec.memory));
   }
   auto& command = build.unit<CommandProcessor>(core, "command", completion);
-  const double cycles_per_nanosecond = spec.clock.bus_megahertz / 1000;
-  AgpBus* agp = needs.agp ? &build.unit<AgpBus>(bus, "agp", spec.agp, cycles_per_nanosecond) : nullptr;
+  const Femtoseconds bus_period = period_of(spec.clock.bus_megahertz);
+  AgpBus* agp = needs.agp ? &build.unit<AgpBus>(bus, "agp", spec.agp, bus_period) : nullptr;
   const Host::Frame frame{std::uint64_t{trace.width} * trace.height,
                           static_cast<int>(layout.color.bytes_per_pixel)};
-  auto& host = build.unit<Host>(bus, "host", spec.host, cycles_per_nanosecond, trace, frame);
+  auto& host = build.unit<Host>(bus, "host", spec.host, bus_period, trace, frame);
   machine->host = &host;
   machine->assembly = &assembly;
 

@@ -1,14 +1,13 @@
 #include "sim/units/agp/agp_bus.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace splatscope::sim {
 
-AgpBus::AgpBus(std::string name, const Machine::Agp& spec, double cycles_per_nanosecond)
+AgpBus::AgpBus(std::string name, const Machine::Agp& spec, Femtoseconds period)
     : Unit(std::move(name)),
       spec_(spec),
-      latency_(static_cast<Cycle>(std::ceil(spec.latency_nanoseconds * cycles_per_nanosecond))) {}
+      latency_(cycles_of(femtoseconds_of(spec.latency_nanoseconds), period)) {}
 
 bool AgpBus::serve(Cycle now, const Client& client) {
   if (!client.requests->can_pop(now)) return false;

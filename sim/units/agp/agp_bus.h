@@ -12,7 +12,7 @@ namespace splatscope::sim {
 // latencies overlapping. On the bus clock.
 class AgpBus final : public Unit {
  public:
-  AgpBus(std::string name, const Machine::Agp& spec, double cycles_per_nanosecond);
+  AgpBus(std::string name, const Machine::Agp& spec, Femtoseconds period);
   void connect(MemoryPort& port, Channel<MemoryRequest>& requests) { clients_.push_back({&port, &requests}); }
 
   Step advance(Cycle now) override;

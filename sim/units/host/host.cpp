@@ -1,24 +1,14 @@
 #include "sim/units/host/host.h"
 
-#include <cmath>
-
 namespace splatscope::sim {
 
-Host::Host(std::string name, const Machine::Host& spec, double cycles_per_nanosecond, const Trace& trace,
+Host::Host(std::string name, const Machine::Host& spec, Femtoseconds period, const Trace& trace,
            const Frame& frame)
-    : Unit(std::move(name)),
-      spec_(spec),
-      cycles_per_nanosecond_(cycles_per_nanosecond),
-      trace_(trace),
-      frame_(frame) {}
+    : Unit(std::move(name)), spec_(spec), period_(period), trace_(trace), frame_(frame) {}
 
 void Host::connect(Channel<Order>& orders, Channel<std::uint32_t>& reports) {
   orders_ = &orders;
   reports_ = &reports;
-}
-
-Cycle Host::cycles_of(double nanoseconds) const {
-  return static_cast<Cycle>(std::ceil(nanoseconds * cycles_per_nanosecond_));
 }
 
 // After the last command, and before the host reads the frame, the caches are written back.
@@ -50,7 +40,7 @@ Step Host::report(Cycle now) {
   if (std::holds_alternative<NormalizeOnHost>(trace_.commands[command_])) {
     phase_ = Phase::normalizing;
     pixels_left_ = frame_.pixels;
-    pixel_end_ = static_cast<double>(now);
+    pixel_end_ = now * period_;
     ready_ = now;
     return busy(now + 1);
   }
@@ -66,7 +56,7 @@ void Host::next_command(Cycle now) {
 
 void Host::prepare(Cycle now) {
   phase_ = Phase::preparing;
-  ready_ = now + (at_end() ? 0 : cycles_of(spec_.command_nanoseconds));
+  ready_ = now + (at_end() ? 0 : cycles_of(femtoseconds_of(spec_.command_nanoseconds), period_));
 }
 
 Step Host::normalize(Cycle now) {
@@ -80,8 +70,8 @@ Step Host::normalize(Cycle now) {
   const int reads = (frame_.pixel_bytes + spec_.uncached_read_bytes - 1) / spec_.uncached_read_bytes;
   const double nanoseconds = reads * spec_.uncached_read_nanoseconds + spec_.division_nanoseconds;
   const int writes = (frame_.pixel_bytes + spec_.write_bytes_per_clock - 1) / spec_.write_bytes_per_clock;
-  pixel_end_ += nanoseconds * cycles_per_nanosecond_ + writes;
-  ready_ = static_cast<Cycle>(std::ceil(pixel_end_));
+  pixel_end_ += femtoseconds_of(nanoseconds) + static_cast<Femtoseconds>(writes) * period_;
+  ready_ = cycles_of(pixel_end_, period_);
   event(ready_, pixels_left_);
   return busy(ready_);
 }

@@ -16,12 +16,12 @@ namespace splatscope::sim {
 // overlap.
 class Host final : public Unit {
  public:
-  // `pixels`: of the frame; `pixel_bytes`: of one. `nanosecond_cycles`: bus cycles a nanosecond.
+  // `period`: of the bus clock. `pixels`: of the frame; `pixel_bytes`: of one.
   struct Frame {
     std::uint64_t pixels = 0;
     int pixel_bytes = 4;
   };
-  Host(std::string name, const Machine::Host& spec, double cycles_per_nanosecond, const Trace& trace,
+  Host(std::string name, const Machine::Host& spec, Femtoseconds period, const Trace& trace,
        const Frame& frame);
   void connect(Channel<Order>& orders, Channel<std::uint32_t>& reports);
 
@@ -43,10 +43,9 @@ class Host final : public Unit {
   Step report(Cycle now);
   Step normalize(Cycle now);
   bool at_end() const { return command_ == trace_.commands.size(); }
-  Cycle cycles_of(double nanoseconds) const;
 
   Machine::Host spec_;
-  double cycles_per_nanosecond_;
+  Femtoseconds period_;
   const Trace& trace_;
   Frame frame_;
   Channel<Order>* orders_ = nullptr;
@@ -57,7 +56,7 @@ class Host final : public Unit {
   std::uint32_t draws_ = 0;
   Cycle ready_ = kNever;
   std::uint64_t pixels_left_ = 0;
-  double pixel_end_ = 0;  // bus cycles, with their fraction
+  Femtoseconds pixel_end_ = 0;
   bool finished_ = false;
   Cycle finished_at_ = 0;
   std::vector<Cycle> ends_;

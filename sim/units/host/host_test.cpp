@@ -1,0 +1,74 @@
+#include "sim/units/host/host.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/testing/bench.h"
+
+namespace splatscope::sim {
+namespace {
+
+// A command processor that reports each order ten cycles after it sees it.
+class Echo final : public Unit {
+ public:
+  Echo() : Unit("echo") {}
+  void connect(Channel<Order>& in, Channel<std::uint32_t>& out) {
+    in_ = &in;
+    out_ = &out;
+  }
+  Step advance(Cycle now) override {
+    if (report_at_ == now) {
+      out_->push(now, 0);
+      report_at_ = kNever;
+    }
+    if (in_->can_pop(now)) {
+      orders_.emplace_back(now, in_->pop(now).kind);
+      report_at_ = now + 10;
+    }
+    return idle(std::min(report_at_, in_->next_visible()));
+  }
+  const testing::Timed<OrderKind>& orders() const { return orders_; }
+
+ private:
+  Channel<Order>* in_ = nullptr;
+  Channel<std::uint32_t>* out_ = nullptr;
+  Cycle report_at_ = kNever;
+  testing::Timed<OrderKind> orders_;
+};
+
+TEST(Host, SendsOneCommandAfterTheOtherAndNormalisesPixelByPixel) {
+  Trace trace;
+  trace.width = 3;
+  trace.height = 2;
+  trace.commands = {Clear{}, Draw{}, NormalizeOnHost{}};
+  Machine::Host spec;
+  spec.command_nanoseconds = 100;
+  spec.uncached_read_nanoseconds = 50;
+  spec.uncached_read_bytes = 1;
+  spec.division_nanoseconds = 30;
+  spec.write_bytes_per_clock = 2;
+  constexpr Femtoseconds period = 10'000'000;  // ten nanoseconds
+  ClockDomain bus("bus", period, period, Scheduler::skip_ahead);
+  Host host("host", spec, period, trace, {6, 4});
+  Echo echo;
+  bus.add(host, 0);
+  bus.add(echo, 1);
+  Channel<Order> orders("orders", host, echo, 1);
+  Channel<std::uint32_t> reports("reports", echo, host, 1);
+  host.connect(orders, reports);
+  echo.connect(orders, reports);
+  bus.run(kNever - 1);
+
+  ASSERT_TRUE(host.is_finished());
+  // 10 cycles of preparation (none before the last), seen by the echo one later, its report one later.
+  const testing::Timed<OrderKind> expected{{11, OrderKind::clear},
+                                           {22 + 11, OrderKind::draw},
+                                           {44 + 11, OrderKind::flush},
+                                           {66 + 6 * 25 + 2, OrderKind::flush}};
+  EXPECT_EQ(echo.orders(), expected);
+  // A pixel: four reads of 5 cycles, 3 to divide, 2 to write; a cycle to turn to the last order.
+  EXPECT_EQ(host.command_ends(), (std::vector<Cycle>{22, 44, 66 + 6 * 25 + 13}));
+  EXPECT_EQ(host.finished_at(), host.command_ends().back());
+}
+
+}  // namespace
+}  // namespace splatscope::sim

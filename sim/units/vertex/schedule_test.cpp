@@ -1,0 +1,140 @@
+#include "sim/units/vertex/schedule.h"
+
+#include <gtest/gtest.h>
+
+namespace splatscope::sim {
+namespace {
+
+using isa::Program;
+
+Program program(std::string_view body) {
+  return isa::assemble("vs_1_1\n" + std::string(body), "test.vs");
+}
+
+// One thread, results at once.
+Machine::Vertex plain() {
+  return {};
+}
+
+Machine::Vertex nv25() {
+  return machine::load("geforce4-ti4400").vertex;
+}
+
+Cycle issue_cycles(std::string_view body, const Machine::Vertex& spec) {
+  return group_schedules(issue_slots(program(body), spec), spec).back().issue_cycles;
+}
+
+std::size_t slots(std::string_view body, Machine::Vertex spec) {
+  spec.pairing = true;
+  return issue_slots(program(body), spec).size();
+}
+
+TEST(Schedule, AFourInstructionTransformTakesNvidiasPublishedClocks) {
+  // 125 M vertices/s of a transform on two units of 275 MHz: 4.4 clocks a vertex of one unit.
+  const Program transform =
+      program("dp4 oPos.x, v0, c0\ndp4 oPos.y, v0, c1\ndp4 oPos.z, v0, c2\ndp4 oPos.w, v0, c3\n");
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(transform, nv25()), (3 * 4 + 1) / 3.0);
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(program("m4x4 oPos, v0, c0\n"), nv25()), (3 * 4 + 1) / 3.0);
+}
+
+TEST(Schedule, OneInstructionAClock) {
+  EXPECT_EQ(issue_cycles("mov r0, v0\nmov r1, v0\nadd r2, r0, r1\n", plain()), 3u);
+}
+
+TEST(Schedule, AResultUsedAtOnceStallsForItsLatency) {
+  Machine::Vertex spec = plain();
+  spec.scalar_latency = 3;
+  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmul r1, v0, r0.x\n", spec), 4u);              // 0 and 3
+  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmov r2, v0\nmul r1, v0, r0.x\n", spec), 4u);  // 0, 1 and 3
+  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmov r2, v0\nmov r3, v0\nmul r1, v0, r0.x\n", spec), 4u);
+  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmul r1, v0, r2.y\n", spec), 2u);  // another register
+}
+
+TEST(Schedule, ThreadsHideTheLatency) {
+  Machine::Vertex spec = plain();
+  spec.vector_latency = 3;
+  EXPECT_EQ(issue_cycles("mov r0, v0\nmov r1, r0\nmov r2, r1\n", spec), 7u);  // 0, 3, 6
+  spec.threads = 3;
+  EXPECT_EQ(issue_cycles("mov r0, v0\nmov r1, r0\nmov r2, r1\n", spec), 9u);  // no cycle empty
+}
+
+TEST(Schedule, TheScalarUnitTakesOneInItsInterval) {
+  Machine::Vertex spec = plain();
+  spec.scalar_interval = 2;
+  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nrcp r1.x, v0.x\nrcp r2.x, v0.x\n", spec), 5u);  // 0, 2, 4
+  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmov r3, v0\nrcp r1.x, v0.x\n", spec), 3u);
+}
+
+TEST(Schedule, GroupsOfEachSize) {
+  Machine::Vertex spec = plain();
+  spec.threads = 3;
+  spec.vector_latency = 5;
+  const auto groups = group_schedules(issue_slots(program("mov r0, v0\nmov r1, v0\n"), spec), spec);
+  ASSERT_EQ(groups.size(), 3u);
+  for (std::size_t vertices = 1; vertices <= 3; ++vertices) {
+    EXPECT_EQ(groups[vertices - 1].issue_cycles, 2 * vertices);
+    EXPECT_EQ(groups[vertices - 1].result_cycles, 2 * vertices - 1 + 5);
+  }
+}
+
+TEST(IssueSlots, AVectorAndAScalarInstructionPair) {
+  EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, r2.x\n", plain()), 1u);
+  EXPECT_EQ(slots("rcp r1.x, r2.x\ndp4 r0.x, v0, c0\n", plain()), 1u);
+}
+
+TEST(IssueSlots, WhatKeepsTwoFromPairing) {
+  EXPECT_EQ(slots("mul r0, v0, c0\nmul r1, v0, c0\n", plain()), 2u);        // both vector
+  EXPECT_EQ(slots("rcp r0.x, r2.x\nrsq r1.x, r2.x\n", plain()), 2u);        // both scalar
+  EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, r0.x\n", plain()), 2u);        // needs the result
+  EXPECT_EQ(slots("add r0, v0, c0\nrcp r1.x, r2.x\n", plain()), 2u);        // third operand port
+  EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, c1.x\n", plain()), 2u);        // two constants
+  EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, v1.x\n", plain()), 2u);        // two inputs
+  EXPECT_EQ(slots("mov oPos, r3\nrcp oD0.w, r2.x\n", plain()), 2u);         // two outputs
+  EXPECT_EQ(slots("mul r0.x, v0.x, c0.x\nrcp r0.x, r2.x\n", plain()), 2u);  // the same component
+  EXPECT_EQ(slots("mul r0.y, v0.x, c0.x\nrcp r0.x, r2.x\n", plain()), 1u);  // another component
+  EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, c0.x\n", plain()), 1u);        // the same constant
+  Machine::Vertex without;
+  EXPECT_EQ(issue_slots(program("mul r0, v0, c0\nrcp r1.x, r2.x\n"), without).size(), 2u);
+}
+
+TEST(IssueSlots, TheDriverBringsIndependentInstructionsTogether) {
+  constexpr std::string_view body =
+      "mul r0, v0, c0\nmul r1, v0, c0\nrcp r2.x, v0.x\nrcp r3.x, r2.x\nmul r4, r1, r3.x\n";
+  Machine::Vertex spec = plain();
+  spec.pairing = true;
+  EXPECT_EQ(issue_slots(program(body), spec).size(), 4u);
+  spec.driver_reorders = true;
+  const auto ordered = issue_slots(program(body), spec);
+  ASSERT_EQ(ordered.size(), 3u);  // rcp r2 beside a mul, rcp r3 beside the other, the last
+  EXPECT_TRUE(ordered[0].has_scalar && ordered[0].has_vector);
+  EXPECT_TRUE(ordered[1].has_scalar && ordered[1].has_vector);
+  EXPECT_EQ(ordered[2].instructions[0], 4);
+}
+
+TEST(IssueSlots, TheDriverKeepsEveryDependence) {
+  Machine::Vertex spec = nv25();
+  // r0 is written, read, written again and read again: the two lives must not mix.
+  const auto ordered = issue_slots(
+      program("mov r0, v0\nmul r1, r0, c0\nrcp r0.x, v0.x\nmul r2, r1, r0.x\nmov r1, v0\nmul oD0, r1, r2\n"),
+      spec);
+  std::vector<std::size_t> slot_of(6);
+  for (std::size_t slot = 0; slot < ordered.size(); ++slot) {
+    for (const int place : ordered[slot].instructions) {
+      if (place >= 0) slot_of[static_cast<std::size_t>(place)] = slot;
+    }
+  }
+  EXPECT_LT(slot_of[0], slot_of[1]);
+  EXPECT_LE(slot_of[1], slot_of[2]);  // may share a slot: operands are read before results are written
+  EXPECT_LT(slot_of[2], slot_of[3]);
+  EXPECT_LE(slot_of[3], slot_of[4]);
+  EXPECT_LT(slot_of[4], slot_of[5]);
+}
+
+TEST(IssueSlots, MacrosTakeTheirSlots) {
+  EXPECT_EQ(issue_slots(program("m3x2 r0.xy, v0, c0\n"), plain()).size(), 2u);
+  const Program chain = program("exp r0.x, v0.x\n");
+  EXPECT_EQ(issue_slots(chain, plain()).size(), static_cast<std::size_t>(isa::slot_count(chain)));
+}
+
+}  // namespace
+}  // namespace splatscope::sim
