@@ -45,7 +45,7 @@ class Builder {
   }
 
   // A way of `client` to video memory, with `reads` in flight at most.
-  MemoryPort& video_port(Unit& client, std::vector<MemoryChannel*>& memory, int reads) {
+  MemoryPort& video_port(Unit& client, const std::vector<MemoryChannel*>& memory, int reads) {
     MemoryPort& port = add_port(client, reads);
     std::vector<Channel<MemoryRequest>*> requests;
     for (MemoryChannel* served_by : memory) {
@@ -103,6 +103,148 @@ void list_left_out(const Needs& needs, std::vector<UnitLeftOut>& left_out) {
   }
 }
 
+// The units of a machine; null: the trace does not need it.
+struct Units {
+  VertexFetch* fetch = nullptr;
+  std::vector<VertexUnit*> vertex;
+  PrimitiveAssembly* assembly = nullptr;
+  TriangleSetup* setup = nullptr;
+  Rasteriser* raster = nullptr;
+  DepthUnit* depth = nullptr;
+  TextureUnit* texture = nullptr;
+  PixelUnit* pixel = nullptr;
+  BlendUnit* blend = nullptr;
+  std::vector<MemoryChannel*> memory;
+  CommandProcessor* command = nullptr;
+  AgpBus* agp = nullptr;
+  Host* host = nullptr;
+};
+
+using Items = Channel<std::uint32_t>;  // numbers of triangles or quads
+
+// In the order of the pipeline; the command processor is called last in its domain.
+Units create_units(Builder& build, SimulatedMachine& machine, const Trace& trace, const Machine& spec,
+                   const MemoryLayout& layout, const Needs& needs) {
+  Units u;
+  ClockDomain& core = machine.core;
+  ClockDomain& bus = machine.bus;
+  Completion& completion = machine.completion;
+  const int width = spec.pixel.quads_per_clock;
+  u.fetch = &build.unit<VertexFetch>(core, "vertex_fetch", completion, spec.fetch, spec.vertex.threads);
+  for (int i = 0; i < spec.vertex.units; ++i) {
+    u.vertex.push_back(&build.unit<VertexUnit>(core, "vertex" + std::to_string(i), completion, spec.vertex,
+                                               machine.schedules));
+  }
+  u.assembly = &build.unit<PrimitiveAssembly>(core, "primitive", completion, spec.primitive);
+  u.setup = &build.unit<TriangleSetup>(core, "setup", completion, spec.setup);
+  u.raster = &build.unit<Rasteriser>(core, "raster", completion, spec.raster, width);
+  u.depth = needs.depth ? &build.unit<DepthUnit>(core, "depth", completion, spec.depth, layout.depth, width)
+                        : nullptr;
+  u.texture =
+      needs.texture ? &build.unit<TextureUnit>(core, "texture", completion, spec.texture, width) : nullptr;
+  u.pixel = needs.color ? &build.unit<PixelUnit>(core, "pixel", completion, width) : nullptr;
+  u.blend = needs.color ? &build.unit<BlendUnit>(core, "blend", completion, spec.blend, layout.color, width)
+                        : nullptr;
+  for (int i = 0; i < spec.memory.channels; ++i) {
+    u.memory.push_back(&build.unit<MemoryChannel>(core, "memory" + std::to_string(i), spec.memory));
+  }
+  u.command = &build.unit<CommandProcessor>(core, "command", completion);
+  const Femtoseconds bus_period = period_of(spec.clock.bus_megahertz);
+  u.agp = needs.agp ? &build.unit<AgpBus>(bus, "agp", spec.agp, bus_period) : nullptr;
+  const Host::Frame frame{std::uint64_t{trace.width} * trace.height,
+                          static_cast<int>(layout.color.bytes_per_pixel)};
+  u.host = &build.unit<Host>(bus, "host", spec.host, bus_period, trace, frame);
+  machine.host = u.host;
+  machine.assembly = u.assembly;
+  return u;
+}
+
+// Host and command processor, across the boundary of the clocks.
+void connect_host(Builder& build, const Units& u) {
+  auto& orders = build.channel<Order>(*u.host, *u.command, 1);
+  auto& reports = build.channel<std::uint32_t>(*u.command, *u.host, 1);
+  u.host->connect(orders, reports);
+  u.command->connect(orders, reports, build.video_port(*u.command, u.memory, 1));
+}
+
+// From indices to triangles that are set up; returns where these are.
+Items& connect_geometry(Builder& build, const Units& u, const Trace& trace, const Machine& spec) {
+  VertexFetch::Ports video{&build.video_port(*u.fetch, u.memory, spec.fetch.index_lines),
+                           &build.video_port(*u.fetch, u.memory, vertex_reads(trace, spec))};
+  VertexFetch::Ports over_agp;
+  if (u.agp) {
+    over_agp = {&build.agp_port(*u.fetch, *u.agp, spec.fetch.index_lines),
+                &build.agp_port(*u.fetch, *u.agp, vertex_reads(trace, spec))};
+  }
+  std::vector<Channel<VertexGroup>*> groups_in, groups_out;
+  for (VertexUnit* unit : u.vertex) {
+    groups_in.push_back(&build.channel<VertexGroup>(*u.fetch, *unit, 1));
+    groups_out.push_back(&build.channel<VertexGroup>(*unit, *u.assembly, spec.vertex.output_groups));
+    unit->connect(*groups_in.back(), *groups_out.back());
+  }
+  auto& order =
+      build.channel<std::uint8_t>(*u.fetch, *u.assembly, spec.vertex.units * (spec.vertex.output_groups + 4));
+  u.fetch->connect(video, over_agp, groups_in, order);
+  std::vector<MemoryPlace> places;
+  for (const Buffer& buffer : trace.buffers) places.push_back(buffer.place);
+  u.fetch->set_places(places);
+  auto& triangles = build.channel<std::uint32_t>(*u.assembly, *u.setup, spec.primitive.queue);
+  auto& set_up = build.channel<std::uint32_t>(*u.setup, *u.raster, spec.setup.queue, spec.setup.latency);
+  u.assembly->connect(order, groups_out, triangles);
+  u.setup->connect(triangles, set_up);
+  return set_up;
+}
+
+// Rasteriser, then what there is of depth test, texture unit, pixel unit and blending.
+void connect_quads(Builder& build, const Units& u, Items& set_up, const Machine& spec,
+                   const MemoryLayout& layout) {
+  Unit* first_of_color = u.texture ? static_cast<Unit*>(u.texture) : u.pixel;
+  Unit* after_raster = u.depth ? static_cast<Unit*>(u.depth) : first_of_color;
+  Items* quads = after_raster ? &build.channel<std::uint32_t>(*u.raster, *after_raster, spec.raster.queue,
+                                                              spec.raster.latency)
+                              : nullptr;
+  u.raster->connect(set_up, quads, u.depth != nullptr);
+  if (u.depth) {
+    Items* passed = first_of_color ? &build.channel<std::uint32_t>(*u.depth, *first_of_color,
+                                                                   spec.depth.queue, spec.depth.latency)
+                                   : nullptr;
+    u.depth->connect(
+        *quads, passed,
+        build.video_port(*u.depth, u.memory, frame_reads(spec, layout.depth, spec.depth.pending)),
+        layout.depth_address);
+    quads = passed;
+  }
+  if (u.texture) {
+    auto& sampled =
+        build.channel<std::uint32_t>(*u.texture, *u.pixel, spec.texture.queue, spec.texture.latency);
+    u.texture->connect(*quads, sampled,
+                       build.video_port(*u.texture, u.memory, 4 * (spec.texture.pending + 1)));
+    quads = &sampled;
+  }
+  if (u.pixel) {
+    auto& shaded = build.channel<std::uint32_t>(*u.pixel, *u.blend, spec.pixel.queue, spec.pixel.latency);
+    u.pixel->connect(*quads, shaded);
+    u.blend->connect(
+        shaded, build.video_port(*u.blend, u.memory, frame_reads(spec, layout.color, spec.blend.pending)),
+        layout.color_address);
+  }
+}
+
+// What a draw begins in, and what a clear writes.
+void set_commands(SimulatedMachine& machine, const Units& u, const Machine& spec,
+                  const MemoryLayout& layout) {
+  std::vector<DrawUnit*> draw_units{u.fetch, u.assembly, u.setup, u.raster};
+  draw_units.insert(draw_units.end(), u.vertex.begin(), u.vertex.end());
+  for (DrawUnit* unit : {static_cast<DrawUnit*>(u.depth), static_cast<DrawUnit*>(u.texture),
+                         static_cast<DrawUnit*>(u.pixel), static_cast<DrawUnit*>(u.blend)}) {
+    if (unit) draw_units.push_back(unit);
+  }
+  u.command->set_draws(machine.jobs, draw_units);
+  std::vector<CommandProcessor::Surface> cleared{{layout.color_address, layout.color.bytes()}};
+  if (u.depth && !spec.depth.fast_clear) cleared.push_back({layout.depth_address, layout.depth.bytes()});
+  u.command->set_frame(u.depth, spec.depth.fast_clear, u.blend, cleared);
+}
+
 }  // namespace
 
 SimulatedMachine::SimulatedMachine(const Machine& machine, Scheduler scheduler)
@@ -123,115 +265,12 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<co
   machine->jobs = std::move(draws.jobs);
   list_left_out(needs, machine->left_out);
 
-  // The units, in the order of the pipeline; the command processor is called last in its domain.
   Builder build(*machine, spec);
-  ClockDomain& core = machine->core;
-  ClockDomain& bus = machine->bus;
-  Completion& completion = machine->completion;
-  const int width = spec.pixel.quads_per_clock;
-  auto& fetch = build.unit<VertexFetch>(core, "vertex_fetch", completion, spec.fetch, spec.vertex.threads);
-  std::vector<VertexUnit*> vertex;
-  for (int i = 0; i < spec.vertex.units; ++i) {
-    vertex.push_back(&build.unit<VertexUnit>(core, "vertex" + std::to_string(i), completion, spec.vertex,
-                                             machine->schedules));
-  }
-  auto& assembly = build.unit<PrimitiveAssembly>(core, "primitive", completion, spec.primitive);
-  auto& setup = build.unit<TriangleSetup>(core, "setup", completion, spec.setup);
-  auto& raster = build.unit<Rasteriser>(core, "raster", completion, spec.raster, width);
-  DepthUnit* depth = needs.depth
-                         ? &build.unit<DepthUnit>(core, "depth", completion, spec.depth, layout.depth, width)
-                         : nullptr;
-  TextureUnit* texture =
-      needs.texture ? &build.unit<TextureUnit>(core, "texture", completion, spec.texture, width) : nullptr;
-  PixelUnit* pixel = needs.color ? &build.unit<PixelUnit>(core, "pixel", completion, width) : nullptr;
-  BlendUnit* blend = needs.color
-                         ? &build.unit<BlendUnit>(core, "blend", completion, spec.blend, layout.color, width)
-                         : nullptr;
-  std::vector<MemoryChannel*> memory;
-  for (int i = 0; i < spec.memory.channels; ++i) {
-    memory.push_back(&build.unit<MemoryChannel>(core, "memory" + std::to_string(i), spec.memory));
-  }
-  auto& command = build.unit<CommandProcessor>(core, "command", completion);
-  const Femtoseconds bus_period = period_of(spec.clock.bus_megahertz);
-  AgpBus* agp = needs.agp ? &build.unit<AgpBus>(bus, "agp", spec.agp, bus_period) : nullptr;
-  const Host::Frame frame{std::uint64_t{trace.width} * trace.height,
-                          static_cast<int>(layout.color.bytes_per_pixel)};
-  auto& host = build.unit<Host>(bus, "host", spec.host, bus_period, trace, frame);
-  machine->host = &host;
-  machine->assembly = &assembly;
-
-  // Host and command processor, across the boundary of the clocks.
-  auto& orders = build.channel<Order>(host, command, 1);
-  auto& reports = build.channel<std::uint32_t>(command, host, 1);
-  host.connect(orders, reports);
-  command.connect(orders, reports, build.video_port(command, memory, 1));
-
-  // Geometry.
-  VertexFetch::Ports video{&build.video_port(fetch, memory, spec.fetch.index_lines),
-                           &build.video_port(fetch, memory, vertex_reads(trace, spec))};
-  VertexFetch::Ports over_agp;
-  if (agp) {
-    over_agp = {&build.agp_port(fetch, *agp, spec.fetch.index_lines),
-                &build.agp_port(fetch, *agp, vertex_reads(trace, spec))};
-  }
-  std::vector<Channel<VertexGroup>*> groups_in, groups_out;
-  for (VertexUnit* unit : vertex) {
-    groups_in.push_back(&build.channel<VertexGroup>(fetch, *unit, 1));
-    groups_out.push_back(&build.channel<VertexGroup>(*unit, assembly, spec.vertex.output_groups));
-    unit->connect(*groups_in.back(), *groups_out.back());
-  }
-  auto& order =
-      build.channel<std::uint8_t>(fetch, assembly, spec.vertex.units * (spec.vertex.output_groups + 4));
-  fetch.connect(video, over_agp, groups_in, order);
-  std::vector<MemoryPlace> places;
-  for (const Buffer& buffer : trace.buffers) places.push_back(buffer.place);
-  fetch.set_places(places);
-  auto& triangles = build.channel<std::uint32_t>(assembly, setup, spec.primitive.queue);
-  auto& set_up = build.channel<std::uint32_t>(setup, raster, spec.setup.queue, spec.setup.latency);
-  assembly.connect(order, groups_out, triangles);
-  setup.connect(triangles, set_up);
-
-  // Quads: rasteriser, then what there is of depth test, texture unit, pixel unit and blending.
-  using Quads = Channel<std::uint32_t>;
-  Unit* first_of_color = texture ? static_cast<Unit*>(texture) : pixel;
-  Unit* after_raster = depth ? static_cast<Unit*>(depth) : first_of_color;
-  Quads* quads = after_raster ? &build.channel<std::uint32_t>(raster, *after_raster, spec.raster.queue,
-                                                              spec.raster.latency)
-                              : nullptr;
-  raster.connect(set_up, quads, depth != nullptr);
-  if (depth) {
-    Quads* passed = first_of_color ? &build.channel<std::uint32_t>(*depth, *first_of_color, spec.depth.queue,
-                                                                   spec.depth.latency)
-                                   : nullptr;
-    depth->connect(*quads, passed,
-                   build.video_port(*depth, memory, frame_reads(spec, layout.depth, spec.depth.pending)),
-                   layout.depth_address);
-    quads = passed;
-  }
-  if (texture) {
-    auto& sampled = build.channel<std::uint32_t>(*texture, *pixel, spec.texture.queue, spec.texture.latency);
-    texture->connect(*quads, sampled, build.video_port(*texture, memory, 4 * (spec.texture.pending + 1)));
-    quads = &sampled;
-  }
-  if (pixel) {
-    auto& shaded = build.channel<std::uint32_t>(*pixel, *blend, spec.pixel.queue, spec.pixel.latency);
-    pixel->connect(*quads, shaded);
-    blend->connect(shaded,
-                   build.video_port(*blend, memory, frame_reads(spec, layout.color, spec.blend.pending)),
-                   layout.color_address);
-  }
-
-  // What a draw begins in, and what a clear writes.
-  std::vector<DrawUnit*> draw_units{&fetch, &assembly, &setup, &raster};
-  draw_units.insert(draw_units.end(), vertex.begin(), vertex.end());
-  for (DrawUnit* unit : {static_cast<DrawUnit*>(depth), static_cast<DrawUnit*>(texture),
-                         static_cast<DrawUnit*>(pixel), static_cast<DrawUnit*>(blend)}) {
-    if (unit) draw_units.push_back(unit);
-  }
-  command.set_draws(machine->jobs, draw_units);
-  std::vector<CommandProcessor::Surface> cleared{{layout.color_address, layout.color.bytes()}};
-  if (depth && !spec.depth.fast_clear) cleared.push_back({layout.depth_address, layout.depth.bytes()});
-  command.set_frame(depth, spec.depth.fast_clear, blend, cleared);
+  const Units units = create_units(build, *machine, trace, spec, layout, needs);
+  connect_host(build, units);
+  Items& set_up = connect_geometry(build, units, trace, spec);
+  connect_quads(build, units, set_up, spec, layout);
+  set_commands(*machine, units, spec, layout);
   return machine;
 }
 
