@@ -171,10 +171,10 @@ Effects effects_of(const Program& program, const Instruction& instruction) {
   for (int i = 0; i < instruction.source_count; ++i) {
     const Source& source = instruction.sources[static_cast<std::size_t>(i)];
     if (source.relative) include(effects.reads, RegisterFile::address, 0, 0x1);
-    const int rows = i == 1 ? std::max(1, matrix_shape(instruction.opcode).rows) : 1;
-    for (int row = 0; is_tracked(source.file) && row < rows; ++row)
-      include(effects.reads, source.file, static_cast<std::size_t>(source.index + row),
-              components_read(instruction, i));
+    const auto rows =
+        static_cast<std::size_t>(i == 1 ? std::max(1, matrix_shape(instruction.opcode).rows) : 1);
+    for (std::size_t row = 0; is_tracked(source.file) && row < rows; ++row)
+      include(effects.reads, source.file, source.index + row, components_read(instruction, i));
   }
   const Destination& destination = instruction.destination;
   const Opcode opcode = instruction.opcode;

@@ -11,7 +11,7 @@
 namespace splatscope::isa {
 
 // Register components: r0..r11, a0, t0..t5, then the outputs (register_bit).
-inline constexpr std::size_t kRegisterBits = 4 * (12 + 1 + 6 + 13);
+inline constexpr std::size_t kRegisterBits = std::size_t{4} * (12 + 1 + 6 + 13);
 using RegisterSet = std::bitset<kRegisterBits>;
 
 std::size_t register_bit(RegisterFile file, std::size_t index, std::size_t component);

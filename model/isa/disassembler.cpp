@@ -61,7 +61,7 @@ std::string text_of(const Program& program, const Source& source) {
 
 std::string mnemonic(const Instruction& instruction, std::string_view name) {
   std::string text(name);
-  const int shift = instruction.destination.shift;
+  const std::int8_t shift = instruction.destination.shift;
   if (shift != 0) text += fmt::format("_{}{}", shift > 0 ? 'x' : 'd', 1 << std::abs(shift));
   return instruction.destination.saturate ? text + "_sat" : text;
 }

@@ -55,21 +55,17 @@ Vec4 expand(VertexFormat format, const std::byte* bytes) {
 std::uint32_t size_of(VertexFormat format) {
   switch (format) {
     case VertexFormat::float1:
+    case VertexFormat::d3dcolor:
+    case VertexFormat::ubyte4:
+    case VertexFormat::short2:
       return 4;
     case VertexFormat::float2:
+    case VertexFormat::short4:
       return 8;
     case VertexFormat::float3:
       return 12;
     case VertexFormat::float4:
       return 16;
-    case VertexFormat::d3dcolor:
-      return 4;
-    case VertexFormat::ubyte4:
-      return 4;
-    case VertexFormat::short2:
-      return 4;
-    case VertexFormat::short4:
-      return 8;
   }
   return 0;
 }
