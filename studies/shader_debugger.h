@@ -31,7 +31,7 @@ class ShaderDebugger {
   void record_vertex(const ShaderCase& registers, Arithmetic arithmetic);
   void record_fragment(const ShaderCase& registers);
 
-  // False where the command ends the session. Throws std::invalid_argument saying what is wrong with it.
+  // False where the command is quit. Throws std::invalid_argument saying what is wrong with it.
   bool obey(std::string_view command, const std::vector<std::string>& arguments, std::ostream& out);
   void step(std::ostream& out);
   void run_while(std::ostream& out, const std::function<bool()>& go_on);

@@ -9,8 +9,8 @@
 namespace splatscope::studies {
 namespace {
 
-std::string session(const std::string& program, const std::string& commands,
-                    const std::string& registers = "{}") {
+std::string transcript(const std::string& program, const std::string& commands,
+                       const std::string& registers = "{}") {
   ShaderDebugger debugger(isa::load(program, "a"), ShaderCase(registers, "case", 1), Arithmetic::ieee);
   std::istringstream in(commands);
   std::ostringstream out;
@@ -22,7 +22,7 @@ const std::string kProgram = "vs_1_1\nmov r0, v0\nadd r0.x, r0, r0\nmov oPos, r0
 const std::string kInputs = R"({"inputs": {"v0": ["3f800000", "40000000", "0", "0"]}})";
 
 TEST(ShaderDebugger, StepsShowWhatIsReadAndWritten) {
-  EXPECT_EQ(session(kProgram, "step\n", kInputs),
+  EXPECT_EQ(transcript(kProgram, "step\n", kInputs),
             "   2  mov r0, v0\n"
             "        reads v0 = (1, 2, 0, 0)  3f800000 40000000 00000000 00000000\n"
             "        r0 before = (0, 0, 0, 0)  00000000 00000000 00000000 00000000\n"
@@ -31,35 +31,35 @@ TEST(ShaderDebugger, StepsShowWhatIsReadAndWritten) {
 
 TEST(ShaderDebugger, RunsToALineAndBack) {
   const std::string print = "r0 = (2, 2, 0, 0)  40000000 40000000 00000000 00000000\n";
-  const std::string to_4 = session(kProgram, "run 4\nprint r0\n", kInputs);
+  const std::string to_4 = transcript(kProgram, "run 4\nprint r0\n", kInputs);
   EXPECT_EQ(to_4.substr(to_4.size() - print.size()), print);
-  const std::string back = session(kProgram, "run 4\nback\nprint r0\n", kInputs);
+  const std::string back = transcript(kProgram, "run 4\nback\nprint r0\n", kInputs);
   EXPECT_NE(back.find("r0 = (1, 2, 0, 0)  3f800000", back.find("after  = (2")), std::string::npos) << back;
 }
 
 TEST(ShaderDebugger, ContinuesUntilAWatchedRegisterChanges) {
-  EXPECT_EQ(session(kProgram, "watch oPos\nstep\ncontinue\nlist\n", kInputs).find("end of the program") ==
+  EXPECT_EQ(transcript(kProgram, "watch oPos\nstep\ncontinue\nlist\n", kInputs).find("end of the program") ==
                 std::string::npos,
             false);
   const std::string stopped =
-      session("vs_1_1\nmov r1, v0\nmov r0, v0\nmov oPos, r0\n", "watch r0\ncontinue\nlist\n", kInputs);
+      transcript("vs_1_1\nmov r1, v0\nmov r0, v0\nmov oPos, r0\n", "watch r0\ncontinue\nlist\n", kInputs);
   EXPECT_NE(stopped.find(">   4  mov oPos, r0\n"), std::string::npos) << stopped;
 }
 
 TEST(ShaderDebugger, PairsAreOneStepAndRelativeConstantsAreFollowed) {
   const std::string pair =
-      session("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, r0.b\n", "step 2\nlist\n");
+      transcript("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, r0.b\n", "step 2\nlist\n");
   EXPECT_NE(pair.find("end of the program"), std::string::npos);
   const std::string relative =
-      session("vs_1_1\nmov a0.x, c0.x\nmov oPos, c[a0.x + 1]\n", "step 2\n",
-              R"({"constants": {"c0": ["40000000", "0", "0", "0"], "c3": ["3f800000", "0", "0", "0"]}})");
+      transcript("vs_1_1\nmov a0.x, c0.x\nmov oPos, c[a0.x + 1]\n", "step 2\n",
+                 R"({"constants": {"c0": ["40000000", "0", "0", "0"], "c3": ["3f800000", "0", "0", "0"]}})");
   EXPECT_NE(relative.find("reads c3 = (1, 0, 0, 0)"), std::string::npos) << relative;
 }
 
 TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
   const auto error_of = [](const std::string& commands) -> std::string {
     try {
-      return session(kProgram, commands);
+      return transcript(kProgram, commands);
     } catch (const UserError& error) {
       return error.what();
     }
