@@ -49,13 +49,6 @@ isa::Program load(const Trace& trace, std::uint32_t program) {
   return isa::load(trace.programs[program].text, trace.programs[program].name);
 }
 
-VertexSchedule schedule_of(const isa::Program& program, const Machine::Vertex& spec) {
-  VertexSchedule schedule;
-  schedule.slots = issue_slots(program, spec);
-  schedule.groups = group_schedules(schedule.slots, spec);
-  return schedule;
-}
-
 void count_work(DrawJob& job) {
   std::uint64_t quads = 0;
   std::uint64_t vertices = 0;
@@ -121,7 +114,7 @@ Needs needs_of(const Trace& trace) {
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                             const MemoryLayout& layout) {
   PreparedDraws prepared;
-  std::map<std::uint32_t, std::size_t> schedule_numbers;  // by program
+  std::map<std::uint32_t, std::size_t> program_numbers;
   std::size_t next_work = 0;
   for (std::size_t command = 0; command < trace.commands.size(); ++command) {
     const Draw* draw = std::get_if<Draw>(&trace.commands[command]);
@@ -133,8 +126,10 @@ PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, 
     job.draw = draw;
     job.work = &work[next_work++];
     const auto [found, is_new] =
-        schedule_numbers.try_emplace(draw->vertex_program, prepared.schedules.size());
-    if (is_new) prepared.schedules.push_back(schedule_of(load(trace, draw->vertex_program), machine.vertex));
+        program_numbers.try_emplace(draw->vertex_program, prepared.vertex_programs.size());
+    if (is_new) {
+      prepared.vertex_programs.push_back(issue_slots(load(trace, draw->vertex_program), machine.vertex));
+    }
     job.vertex_program = found->second;
     if (draw->pixel_program)
       job.pixel_clocks = clocks_per_quad(load(trace, *draw->pixel_program), machine.pixel);

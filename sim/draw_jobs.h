@@ -39,10 +39,10 @@ Needs needs_of(const Trace& trace);
 // least 1.
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec);
 
-// The schedules of the vertex programs that the draws use, and the draws with their work, in order.
+// The vertex programs that the draws use, and the draws with their work, in order.
 // UserError where a program does not load, ModelError where trace and work do not fit together.
 struct PreparedDraws {
-  std::vector<VertexSchedule> schedules;
+  std::vector<std::vector<IssueSlot>> vertex_programs;
   std::vector<DrawJob> jobs;
 };
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,

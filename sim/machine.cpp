@@ -81,7 +81,8 @@ int frame_reads(const Machine& spec, const FrameLines& lines, int pending) {
   return (pending + 1) * std::max(parts, 1);
 }
 
-// Reads in flight of the vertex cache: a group's vertices may each span lines of the widest stride.
+// Reads in flight of the vertex cache: the waiting vertices' and the entering one's, each over lines of the
+// widest stride.
 int vertex_reads(const Trace& trace, const Machine& spec) {
   int widest = 1;
   for (const Command& command : trace.commands) {
@@ -89,7 +90,7 @@ int vertex_reads(const Trace& trace, const Machine& spec) {
       widest = std::max(widest, static_cast<int>(draw->vertex_stride));
   }
   const int lines = (widest + spec.fetch.line_bytes - 2) / spec.fetch.line_bytes + 1;
-  return (spec.fetch.pending_groups + 2) * spec.vertex.threads * lines;
+  return (spec.fetch.pending_vertices + 1) * lines;
 }
 
 void list_left_out(const Needs& needs, std::vector<UnitLeftOut>& left_out) {
@@ -130,10 +131,10 @@ Units create_units(Builder& build, SimulatedMachine& machine, const Trace& trace
   ClockDomain& bus = machine.bus;
   Completion& completion = machine.completion;
   const int width = spec.pixel.quads_per_clock;
-  u.fetch = &build.unit<VertexFetch>(core, "vertex_fetch", completion, spec.fetch, spec.vertex.threads);
+  u.fetch = &build.unit<VertexFetch>(core, "vertex_fetch", completion, spec.fetch);
   for (int i = 0; i < spec.vertex.units; ++i) {
     u.vertex.push_back(&build.unit<VertexUnit>(core, "vertex" + std::to_string(i), completion, spec.vertex,
-                                               machine.schedules));
+                                               machine.vertex_programs));
   }
   u.assembly = &build.unit<PrimitiveAssembly>(core, "primitive", completion, spec.primitive);
   u.setup = &build.unit<TriangleSetup>(core, "setup", completion, spec.setup);
@@ -176,21 +177,22 @@ Items& connect_geometry(Builder& build, const Units& u, const Trace& trace, cons
     over_agp = {&build.agp_port(*u.fetch, *u.agp, spec.fetch.index_lines),
                 &build.agp_port(*u.fetch, *u.agp, vertex_reads(trace, spec))};
   }
-  std::vector<Channel<VertexGroup>*> groups_in, groups_out;
+  std::vector<Channel<VertexNumber>*> vertices_in, vertices_out;
   for (VertexUnit* unit : u.vertex) {
-    groups_in.push_back(&build.channel<VertexGroup>(*u.fetch, *unit, 1));
-    groups_out.push_back(&build.channel<VertexGroup>(*unit, *u.assembly, spec.vertex.output_groups));
-    unit->connect(*groups_in.back(), *groups_out.back());
+    vertices_in.push_back(&build.channel<VertexNumber>(*u.fetch, *unit, VertexUnit::kInputVertices));
+    vertices_out.push_back(&build.channel<VertexNumber>(*unit, *u.assembly, spec.vertex.output_vertices));
+    unit->connect(*vertices_in.back(), *vertices_out.back());
   }
-  auto& order =
-      build.channel<std::uint8_t>(*u.fetch, *u.assembly, spec.vertex.units * (spec.vertex.output_groups + 4));
-  u.fetch->connect(video, over_agp, groups_in, order);
+  const int on_their_way =
+      VertexUnit::kInputVertices + VertexUnit::most_vertices(spec.vertex) + spec.vertex.output_vertices;
+  auto& order = build.channel<std::uint8_t>(*u.fetch, *u.assembly, spec.vertex.units * on_their_way);
+  u.fetch->connect(video, over_agp, vertices_in, order);
   std::vector<MemoryPlace> places;
   for (const Buffer& buffer : trace.buffers) places.push_back(buffer.place);
   u.fetch->set_places(places);
   auto& triangles = build.channel<std::uint32_t>(*u.assembly, *u.setup, spec.primitive.queue);
   auto& set_up = build.channel<std::uint32_t>(*u.setup, *u.raster, spec.setup.queue, spec.setup.latency);
-  u.assembly->connect(order, groups_out, triangles);
+  u.assembly->connect(order, vertices_out, triangles);
   u.setup->connect(triangles, set_up);
   return set_up;
 }
@@ -261,7 +263,7 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<co
   const MemoryLayout layout = lay_out(trace, spec);
   const Needs needs = needs_of(trace);
   PreparedDraws draws = prepare_draws(trace, work, spec, layout);
-  machine->schedules = std::move(draws.schedules);
+  machine->vertex_programs = std::move(draws.vertex_programs);
   machine->jobs = std::move(draws.jobs);
   list_left_out(needs, machine->left_out);
 

@@ -34,7 +34,7 @@ struct SimulatedMachine {
   ClockDomain core;
   ClockDomain bus;
   Completion completion;
-  std::vector<VertexSchedule> schedules;
+  std::vector<std::vector<IssueSlot>> vertex_programs;
   std::vector<DrawJob> jobs;
   std::vector<std::unique_ptr<Unit>> units;  // in the order in which they are called, core before bus
   std::vector<std::unique_ptr<ChannelState>> channels;

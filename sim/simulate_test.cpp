@@ -6,6 +6,7 @@
 
 #include "model/error.h"
 #include "sim/testing/random_trace.h"
+#include "sim/units/vertex/throughput.h"
 
 namespace splatscope::sim {
 namespace {
@@ -128,7 +129,7 @@ TEST(Simulate, VertexBoundDrawsTakeTheScheduledClocksAVertex) {
   const Result b = simulate(large.trace, large.work, machine);
   const isa::Program program = isa::load(small.trace.programs[1].text, small.trace.programs[1].name);
   const double expected = 3000 * clocks_per_vertex(program, machine.vertex) / machine.vertex.units;
-  // Start and end of the draw cancel, but for a group of the one unit that the other does not have.
+  // Start and end of the draw cancel, but for a vertex of the one unit that the other does not have.
   EXPECT_NEAR(static_cast<double>(b.cycles - a.cycles), expected, 60);
 }
 

@@ -13,57 +13,25 @@
 #include "model/isa/tokens.h"
 #include "model/machine/machine.h"
 #include "sim/draw_jobs.h"
-#include "sim/units/vertex/schedule.h"
+#include "sim/units/vertex/throughput.h"
 
 namespace splatscope::studies {
 namespace {
 
-// Which instructions issue in each slot of a vertex unit, and how long each slot waits in a full group of
-// vertices.
-struct Issue {
-  std::vector<std::size_t> instructions;  // one, or a pair
-  int waiting = 0;                        // clocks in which the unit issued nothing and this slot came next
-};
-
-std::vector<Issue> issues_of(const isa::Program& program, const Machine::Vertex& spec) {
-  const std::vector<sim::IssueSlot> slots = sim::issue_slots(program, spec);
-  std::vector<Issue> issues(slots.size());
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    for (const int place : slots[i].instructions) {
-      if (place >= 0) issues[i].instructions.push_back(static_cast<std::size_t>(place));
-    }
-  }
-  sim::IssueLogic logic(slots, spec);
-  logic.start(spec.threads);
-  std::vector<std::size_t> next(static_cast<std::size_t>(spec.threads));
-  for (int waiting = 0; !logic.done();) {
-    const int thread = logic.issue();
-    if (thread < 0) {
-      ++waiting;
-      continue;
-    }
-    issues[next[static_cast<std::size_t>(thread)]++].waiting += waiting;
-    waiting = 0;
-  }
-  return issues;
-}
-
 std::string describe_on_machine(const isa::Program& program, const Machine& machine) {
-  const std::vector<Issue> issues = issues_of(program, machine.vertex);
+  const std::vector<sim::IssueSlot> slots = sim::issue_slots(program, machine.vertex);
+  const sim::Throughput throughput = sim::throughput(slots, machine.vertex);
   std::string pairs, waits;
-  const auto line = [&](std::size_t instruction) { return program.instructions[instruction].line; };
-  for (const Issue& issue : issues) {
-    if (issue.instructions.size() == 2)
-      pairs += fmt::format(" {}+{}", line(issue.instructions[0]), line(issue.instructions[1]));
-    if (issue.waiting > 0) waits += fmt::format(" {} ({})", line(issue.instructions[0]), issue.waiting);
+  const auto line = [&](int place) { return program.instructions[static_cast<std::size_t>(place)].line; };
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const auto [first, second] = slots[i].instructions;
+    if (second >= 0) pairs += fmt::format(" {}+{}", line(first), line(second));
+    if (throughput.waits[i] > 0) waits += fmt::format(" {} ({:.2f})", line(first), throughput.waits[i]);
   }
-  std::string text =
-      fmt::format("{}: {:.2f} clocks a vertex in each of {} units, {} issues\n", machine.name,
-                  sim::clocks_per_vertex(program, machine.vertex), machine.vertex.units, issues.size());
+  std::string text = fmt::format("{}: {:.2f} clocks a vertex in each of {} units, {} issues\n", machine.name,
+                                 throughput.clocks_per_vertex, machine.vertex.units, slots.size());
   if (!pairs.empty()) text += fmt::format("  pairs, by line:{}\n", pairs);
-  if (!waits.empty())
-    text += fmt::format("  waits, by line (clocks of a group of {} vertices):{}\n", machine.vertex.threads,
-                        waits);
+  if (!waits.empty()) text += fmt::format("  waits, by line (clocks a vertex):{}\n", waits);
   return text;
 }
 

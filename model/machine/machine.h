@@ -25,14 +25,14 @@ struct Machine {
     int scalar_interval = 1;
     bool pairing = false;
     bool driver_reorders = false;
-    int group_start_cycles = 0;
+    int reload_cycles = 0;
     int cache_entries = 18;
-    int output_groups = 4;
+    int output_vertices = 4;
   };
   struct Fetch {
     int line_bytes = 64;
     int cache_lines = 16;
-    int pending_groups = 16;
+    int pending_vertices = 16;
     int index_lines = 4;
     int indices_per_clock = 1;
   };

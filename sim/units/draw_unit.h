@@ -12,7 +12,7 @@ namespace splatscope::sim {
 struct DrawJob {
   const Draw* draw = nullptr;
   const DrawWork* work = nullptr;
-  std::size_t vertex_program = 0;    // which of the schedules of the vertex units
+  std::size_t vertex_program = 0;    // which of the programs of the vertex units
   std::uint64_t pixel_clocks = 1;    // a quad, of the pixel unit
   std::uint32_t vertex_address = 0;  // of base vertex 0, in the memory it lies in
   std::uint32_t index_address = 0;   // of the first index

@@ -12,7 +12,7 @@ constexpr std::uint64_t kReportEvery = 4096;  // triangles
 PrimitiveAssembly::PrimitiveAssembly(std::string name, Completion& completion, const Machine::Primitive& spec)
     : DrawUnit(std::move(name), completion), spec_(spec) {}
 
-void PrimitiveAssembly::connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexGroup>*> units,
+void PrimitiveAssembly::connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexNumber>*> units,
                                 Channel<std::uint32_t>& out) {
   order_ = &order;
   units_ = std::move(units);
@@ -26,13 +26,14 @@ std::uint64_t PrimitiveAssembly::start(const DrawJob& job) {
   return job.work->triangles.size();
 }
 
-// One group a cycle, when the next triangle needs it.
-bool PrimitiveAssembly::take_group(Cycle now) {
+// One vertex a cycle, when the next triangle needs it.
+bool PrimitiveAssembly::take_vertex(Cycle now) {
   if (vertices_ >= job().work->triangles[triangle_].new_vertices || !order_->can_pop(now)) return false;
   auto& unit = *units_[order_->front()];
   if (!unit.can_pop(now)) return false;
   order_->pop(now);
-  vertices_ += unit.pop(now).vertices;
+  unit.pop(now);
+  ++vertices_;
   return true;
 }
 
@@ -60,7 +61,7 @@ bool PrimitiveAssembly::assemble(Cycle now) {
 Step PrimitiveAssembly::advance(Cycle now) {
   if (!has_work()) return free_from_ > now ? busy(free_from_) : idle();
   bool moved = assemble(now);
-  if (has_work()) moved |= take_group(now);
+  if (has_work()) moved |= take_vertex(now);
   if (moved) return busy(now + 1);
   if (free_from_ > now) return busy(free_from_);
   if (vertices_ >= job().work->triangles[triangle_].new_vertices) {

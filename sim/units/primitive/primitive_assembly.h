@@ -15,8 +15,8 @@ namespace splatscope::sim {
 class PrimitiveAssembly final : public DrawUnit {
  public:
   PrimitiveAssembly(std::string name, Completion& completion, const Machine::Primitive& spec);
-  // `order`: which vertex unit has the next group. `out`: the numbers of the triangles to set up.
-  void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexGroup>*> units,
+  // `order`: which vertex unit has the next vertex. `out`: the numbers of the triangles to set up.
+  void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexNumber>*> units,
                Channel<std::uint32_t>& out);
 
   Step advance(Cycle now) override;
@@ -28,12 +28,12 @@ class PrimitiveAssembly final : public DrawUnit {
 
  private:
   std::uint64_t start(const DrawJob& job) override;
-  bool take_group(Cycle now);
+  bool take_vertex(Cycle now);
   bool assemble(Cycle now);
 
   Machine::Primitive spec_;
   Channel<std::uint8_t>* order_ = nullptr;
-  std::vector<Channel<VertexGroup>*> units_;
+  std::vector<Channel<VertexNumber>*> units_;
   Channel<std::uint32_t>* out_ = nullptr;
   std::size_t triangle_ = 0;
   std::uint32_t vertices_ = 0;  // taken and not used by a triangle yet

@@ -9,13 +9,13 @@ namespace {
 
 using testing::Timed;
 
-// Groups of the one vertex unit, when they come; and the triangles that leave.
-Timed<std::uint32_t> assemble(testing::TestDraw& draw, Timed<VertexGroup> groups,
+// Vertices of the one vertex unit, when they come; and the triangles that leave.
+Timed<std::uint32_t> assemble(testing::TestDraw& draw, Timed<VertexNumber> vertices,
                               const Machine::Primitive& spec, Cycle& done_at) {
   testing::Bench bench;
   Timed<std::uint8_t> units;
-  for (const auto& [at, group] : groups) units.emplace_back(at, std::uint8_t{0});
-  testing::Source<VertexGroup> source(std::move(groups));
+  for (const auto& [at, vertex] : vertices) units.emplace_back(at, std::uint8_t{0});
+  testing::Source<VertexNumber> source(std::move(vertices));
   testing::Source<std::uint8_t> order_source(std::move(units));
   PrimitiveAssembly assembly("primitive", bench.completion(), spec);
   testing::Sink<std::uint32_t> sink;
@@ -23,7 +23,7 @@ Timed<std::uint32_t> assemble(testing::TestDraw& draw, Timed<VertexGroup> groups
                      static_cast<Unit*>(&assembly), static_cast<Unit*>(&sink)}) {
     bench.add(*unit);
   }
-  Channel<VertexGroup> in("in", source, assembly, 8);
+  Channel<VertexNumber> in("in", source, assembly, 8);
   Channel<std::uint8_t> order("order", order_source, assembly, 8);
   Channel<std::uint32_t> out("out", assembly, sink, 8);
   source.connect(in);
@@ -42,9 +42,8 @@ TEST(PrimitiveAssembly, ATriangleWaitsForItsVertices) {
   draw.add_triangle(1, 0, 1);
   draw.add_triangle(0, 0, 1);
   Cycle done = 0;
-  // Groups of two seen in 1 and 21, taken one a cycle: the first triangle in 22, with one vertex over for the
-  // second.
-  EXPECT_EQ(assemble(draw, {{0, {0, 2}}, {20, {1, 2}}}, {1, 4, 8}, done),
+  // Two vertices seen in 1 and 2, two in 21 and 22: the first triangle in 22, the second in 23.
+  EXPECT_EQ(assemble(draw, {{0, 0}, {0, 1}, {20, 2}, {20, 3}}, {1, 4, 8}, done),
             (Timed<std::uint32_t>{{23, 0u}, {24, 1u}, {25, 2u}}));
   EXPECT_EQ(done, 25u);
 }
@@ -55,8 +54,9 @@ TEST(PrimitiveAssembly, RejectedTrianglesEndHereAndClippedOnesTakeLonger) {
   draw.add_triangle(0, 0, 1, 3);
   draw.add_triangle(0, 0, 1);
   Cycle done = 0;
-  // Taken in 1; assembled in 2, 3 and, two further pieces of four clocks later, 12.
-  EXPECT_EQ(assemble(draw, {{0, {0, 3}}}, {1, 4, 8}, done), (Timed<std::uint32_t>{{4, 1u}, {13, 2u}}));
+  // Taken in 1 to 3; assembled in 4, 5 and, two further pieces of four clocks later, 14.
+  EXPECT_EQ(assemble(draw, {{0, 0}, {0, 1}, {0, 2}}, {1, 4, 8}, done),
+            (Timed<std::uint32_t>{{6, 1u}, {15, 2u}}));
 }
 
 }  // namespace

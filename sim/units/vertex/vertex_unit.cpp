@@ -5,100 +5,130 @@
 namespace splatscope::sim {
 
 VertexUnit::VertexUnit(std::string name, Completion& completion, const Machine::Vertex& spec,
-                       const std::vector<VertexSchedule>& schedules)
-    : DrawUnit(std::move(name), completion), spec_(spec), schedules_(schedules) {
-  for (const VertexSchedule& schedule : schedules) logics_.emplace_back(schedule.slots, spec);
+                       const std::vector<std::vector<IssueSlot>>& programs)
+    : DrawUnit(std::move(name), completion),
+      spec_(spec),
+      programs_(programs),
+      of_threads_(static_cast<std::size_t>(spec.threads)) {
+  for (const auto& slots : programs) {
+    logics_.emplace_back(slots, spec);
+    replays_.emplace_back(slots, spec);
+  }
 }
 
-void VertexUnit::connect(Channel<VertexGroup>& in, Channel<VertexGroup>& out) {
+void VertexUnit::connect(Channel<VertexNumber>& in, Channel<VertexNumber>& out) {
   in_ = &in;
   out_ = &out;
 }
 
-// Its one item is the end of the draw: which unit gets how many groups is found on the way.
+// Its one item is the end of the draw: which unit gets how many vertices is found on the way.
 std::uint64_t VertexUnit::start(const DrawJob& job) {
+  program_ = job.vertex_program;
+  logics_[program_] = IssueLogic(programs_[program_], spec_);
+  replays_[program_].rest();
   return job.work->shaded_vertices.empty() ? 0 : 1;
 }
 
+// What the logic issues in the cycles up to and with this one.
+void VertexUnit::issue_up_to(Cycle now) {
+  if (is_referee()) {
+    if (const auto issued = logics_[program_].issue(); issued && issued->is_last) end(*issued, now);
+    coming_ = now + 1;
+    return;
+  }
+  IssueReplay& replay = replays_[program_];
+  for (;;) {
+    const IssueReplay::NextEnd next = replay.next_end();
+    if (next.cycles == kNever || coming_ + next.cycles > now + 1) return;
+    coming_ += next.cycles;
+    replay.pass_next_end();
+    end(next.issued, coming_ - 1);
+  }
+}
+
+void VertexUnit::end(const Issued& last, Cycle at) {
+  const std::uint64_t oldest = taken_ - vertices_.size();
+  Vertex& vertex = vertices_[of_threads_[static_cast<std::size_t>(last.thread)] - oldest];
+  vertex.result_at = at + last.result;
+  reloaded_at_ = at + 1 + static_cast<Cycle>(spec_.reload_cycles);
+  event(at, vertex.number);
+}
+
 bool VertexUnit::retire(Cycle now) {
-  if (results_.empty() || results_.front().at > now || !out_->can_push(now)) return false;
-  const VertexGroup group = results_.front().group;
-  results_.pop_front();
-  event(now, group.number);
-  out_->push(now, group);
+  if (vertices_.empty() || vertices_.front().result_at > now || !out_->can_push(now)) return false;
+  const VertexNumber number = vertices_.front().number;
+  vertices_.pop_front();
+  event(now, number);
+  out_->push(now, number);
   return true;
+}
+
+// When the vertex that waits can be taken, or the draw ended; kNever: not before something else happens.
+Cycle VertexUnit::next_take() const {
+  if (in_->empty()) return kNever;
+  Cycle free = kNever;
+  if (in_->front() == kEndOfDraw) {
+    if (vertices_.empty()) free = reloaded_at_;
+  } else if (vertices_.size() != static_cast<std::size_t>(most_vertices(spec_))) {
+    const Cycle wait = logic().next_free();
+    if (wait != kNever) free = coming_ - 1 + wait;
+  }
+  return free == kNever ? kNever : std::max(free, in_->next_visible());
 }
 
 bool VertexUnit::take(Cycle now) {
-  if (next_start_ > now || results_.size() == kInPipeline || !in_->can_pop(now)) return false;
-  const VertexGroup group = in_->pop(now);
-  if (group.vertices == 0) {
+  if (next_take() > now) return false;
+  const VertexNumber number = in_->pop(now);
+  if (number == kEndOfDraw) {
     item_done(now);
     return true;
   }
-  const VertexSchedule& schedule = schedules_[job().vertex_program];
-  ++groups_;
-  vertices_ += group.vertices;
-  slots_ += group.vertices * schedule.slots.size();
-  event(now, ~std::uint64_t{group.number});
-  if (domain().scheduler() == Scheduler::referee) {
-    issuing_ = &logics_[job().vertex_program];
-    issuing_->start(static_cast<int>(group.vertices));
-    issue_start_ = now;
-    next_start_ = kNever;
-    results_.push_back({group, kNever});
-    return true;
+  int thread = 0;
+  if (is_referee()) {
+    thread = logics_[program_].take();
+  } else {
+    replays_[program_].pass(now + 1 - coming_);
+    thread = replays_[program_].take();
+    coming_ = now + 1;
   }
-  const GroupSchedule& timing = schedule.groups[group.vertices - 1];
-  next_start_ = now + timing.issue_cycles + static_cast<Cycle>(spec_.group_start_cycles);
-  results_.push_back({group, now + timing.result_cycles});
+  of_threads_[static_cast<std::size_t>(thread)] = taken_++;
+  vertices_.push_back({number, kNever});
+  slots_ += programs_[program_].size();
+  event(now, ~std::uint64_t{number});
   return true;
 }
 
-// The referee's: one cycle of the issue logic.
-void VertexUnit::issue_cycle() {
-  issuing_->issue();
-  if (!issuing_->done()) return;
-  next_start_ = issue_start_ + issuing_->issue_cycles() + static_cast<Cycle>(spec_.group_start_cycles);
-  results_.back().at = issue_start_ + issuing_->last_result();
-  issuing_ = nullptr;
-}
-
+// The end of a draw is taken when nothing is left to issue, to pass on or to reload.
 Step VertexUnit::advance(Cycle now) {
+  if (!has_work()) return idle();
+  issue_up_to(now);
   const bool retired = retire(now);
   const bool took = take(now);
-  if (issuing_) issue_cycle();
-  if (issuing_) return busy(now + 1);
-  if (next_start_ > now) {  // a result may be due while the group behind it issues
-    if (results_.empty()) return busy(next_start_);
-    const Cycle due = results_.front().at;
-    return busy(std::min(next_start_, due > now ? due : out_->next_free()));
-  }
-  if (retired || took) return busy(now + 1);
-  return waiting(now);
+  return retired || took ? busy(now + 1) : waiting(now);
 }
 
-// Nothing issues and nothing could be moved: why.
-Step VertexUnit::waiting(Cycle now) const {
-  if (results_.empty()) return nothing_to_take(in_->next_visible());
-  const Cycle due = results_.front().at;
-  if (due <= now) {
-    const Cycle next =
-        results_.size() < kInPipeline ? std::min(out_->next_free(), in_->next_visible()) : out_->next_free();
-    return blocked(out_->consumer(), next);
+// Nothing could be moved: what goes on, or why nothing does.
+Step VertexUnit::waiting(Cycle now) {
+  const Cycle due = vertices_.empty() ? kNever : vertices_.front().result_at;
+  const Cycle next = std::min(next_take(), due <= now ? out_->next_free() : due);
+  if (logic().held() != 0) {
+    if (is_referee()) return busy(now + 1);
+    return busy(std::min(next, coming_ + replays_[program_].next_end().cycles - 1));
   }
-  return busy(results_.size() < kInPipeline ? std::min(due, in_->next_visible()) : due);
+  if (reloaded_at_ > now) return busy(std::min(next, reloaded_at_));
+  if (vertices_.empty()) return nothing_to_take(next);
+  return due <= now ? blocked(out_->consumer(), next) : busy(next);
 }
 
 std::vector<Statistic> VertexUnit::statistics() const {
-  return {{"groups", "groups", "groups of vertices taken", groups_},
-          {"vertices", "vertices", "vertices shaded", vertices_},
+  return {{"vertices", "vertices", "vertices shaded", taken_},
           {"issue_slots", "slots", "instructions issued, a pair as one", slots_}};
 }
 
 std::string VertexUnit::state() const {
-  return std::to_string(results_.size()) + " groups in the pipeline, next start at " +
-         std::to_string(next_start_);
+  if (!has_work()) return {};
+  return std::to_string(vertices_.size()) + " vertices, " + std::to_string(logic().held()) +
+         " of them issuing";
 }
 
 }  // namespace splatscope::sim

@@ -6,60 +6,62 @@
 #include "model/machine/machine.h"
 #include "sim/kernel/channel.h"
 #include "sim/units/draw_unit.h"
-#include "sim/units/vertex/schedule.h"
+#include "sim/units/vertex/issue_replay.h"
 
 namespace splatscope::sim {
 
-// Vertices that a vertex unit takes together. `vertices` 0: no more of this draw.
-struct VertexGroup {
-  std::uint32_t number = 0;    // of the draw
-  std::uint32_t vertices = 0;  // 1 to vertex.threads
-};
+// A vertex on its way: its place among the shaded vertices of the draw.
+using VertexNumber = std::uint32_t;
+inline constexpr VertexNumber kEndOfDraw = ~VertexNumber{0};  // to a vertex unit: no more of this draw
 
-// A vertex program made ready for the units: what it issues, and when.
-struct VertexSchedule {
-  std::vector<IssueSlot> slots;
-  std::vector<GroupSchedule> groups;  // of 1, 2, ... vertices
-  std::uint64_t instructions = 0;     // slots as Direct3D counts them
-};
-
-// One programmable vertex unit. Groups issue one after the other; while the results of one are still in the
-// pipeline the next may issue.
+// One programmable vertex unit. Takes at most one vertex a cycle, whose first slot can issue in the next
+// cycle, and passes the results on in the order in which it took the vertices, at most one a cycle. For each
+// thread it has room for the result of one vertex that has ended.
 class VertexUnit final : public DrawUnit {
  public:
-  // `schedules`: of the programs of the trace, by DrawJob::vertex_program; outlives the unit.
+  static constexpr int kInputVertices = 2;  // that wait before it: one can be taken in every cycle
+
+  // `programs`: of the trace, by DrawJob::vertex_program; outlives the unit.
   VertexUnit(std::string name, Completion& completion, const Machine::Vertex& spec,
-             const std::vector<VertexSchedule>& schedules);
-  void connect(Channel<VertexGroup>& in, Channel<VertexGroup>& out);
+             const std::vector<std::vector<IssueSlot>>& programs);
+  void connect(Channel<VertexNumber>& in, Channel<VertexNumber>& out);
+
+  // Vertices that a unit holds at most, from taking to passing on.
+  static int most_vertices(const Machine::Vertex& spec) { return 2 * spec.threads; }
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
   std::string state() const override;
 
  private:
-  static constexpr std::size_t kInPipeline = 2;  // groups whose results are not out yet
-
-  struct Result {
-    VertexGroup group;
-    Cycle at;  // kNever: still issuing (referee)
+  struct Vertex {
+    VertexNumber number;
+    Cycle result_at;  // kNever: not known before its last slot is issued
   };
 
   std::uint64_t start(const DrawJob& job) override;
+  bool is_referee() const { return domain().scheduler() == Scheduler::referee; }
+  const IssueLogic& logic() const { return is_referee() ? logics_[program_] : replays_[program_].logic(); }
+  void issue_up_to(Cycle now);
+  void end(const Issued& last, Cycle at);
   bool retire(Cycle now);
   bool take(Cycle now);
-  void issue_cycle();
-  Step waiting(Cycle now) const;
+  Cycle next_take() const;
+  Step waiting(Cycle now);
 
   Machine::Vertex spec_;
-  const std::vector<VertexSchedule>& schedules_;
-  Channel<VertexGroup>* in_ = nullptr;
-  Channel<VertexGroup>* out_ = nullptr;
-  std::vector<IssueLogic> logics_;  // by program; the referee's
-  IssueLogic* issuing_ = nullptr;   // the referee's, while a group issues
-  Cycle issue_start_ = 0;
-  Cycle next_start_ = 0;  // kNever: not known yet (referee)
-  std::deque<Result> results_;
-  std::uint64_t groups_ = 0, vertices_ = 0, slots_ = 0;
+  const std::vector<std::vector<IssueSlot>>& programs_;
+  Channel<VertexNumber>* in_ = nullptr;
+  Channel<VertexNumber>* out_ = nullptr;
+  // By program: the logic issued cycle by cycle (referee), the logic replayed (skip-ahead).
+  std::vector<IssueLogic> logics_;
+  std::vector<IssueReplay> replays_;
+  std::size_t program_ = 0;
+  Cycle coming_ = 1;                       // the cycle that the logic goes on with
+  Cycle reloaded_at_ = 0;                  // when all threads without a vertex are reloaded
+  std::vector<std::uint64_t> of_threads_;  // the vertex that each thread took, counted as taken_
+  std::deque<Vertex> vertices_;
+  std::uint64_t taken_ = 0, slots_ = 0;
 };
 
 }  // namespace splatscope::sim

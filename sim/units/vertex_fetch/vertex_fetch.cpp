@@ -9,14 +9,13 @@ constexpr std::uint32_t kIndexBytes = 2;
 
 }  // namespace
 
-VertexFetch::VertexFetch(std::string name, Completion& completion, const Machine::Fetch& spec, int threads)
+VertexFetch::VertexFetch(std::string name, Completion& completion, const Machine::Fetch& spec)
     : DrawUnit(std::move(name), completion),
       spec_(spec),
-      threads_(static_cast<std::uint32_t>(threads)),
       cache_({spec.cache_lines, std::min(spec.cache_lines, 4), static_cast<std::uint32_t>(spec.line_bytes),
-              static_cast<std::uint32_t>(spec.line_bytes), spec.pending_groups}) {}
+              static_cast<std::uint32_t>(spec.line_bytes), spec.pending_vertices}) {}
 
-void VertexFetch::connect(const Ports& video, const Ports& agp, std::vector<Channel<VertexGroup>*> units,
+void VertexFetch::connect(const Ports& video, const Ports& agp, std::vector<Channel<VertexNumber>*> units,
                           Channel<std::uint8_t>& order) {
   places_ports_[static_cast<std::size_t>(MemoryPlace::video)] = video;
   places_ports_[static_cast<std::size_t>(MemoryPlace::agp)] = agp;
@@ -38,7 +37,7 @@ std::uint64_t VertexFetch::start(const DrawJob& job) {
   index_lines_ = (job.index_address + indices * kIndexBytes - 1) / line_bytes - first_index_line_ + 1;
   asked_ = taken_ = 0;
   triangle_ = vertex_ = ended_ = 0;
-  new_vertices_ = line_ = forming_ = groups_ = delivered_ = 0;
+  new_vertices_ = line_ = delivered_ = 0;
   in_triangle_ = in_vertex_ = false;
   walk_from_ = 0;
   return 1;
@@ -55,22 +54,22 @@ bool VertexFetch::deliver(Cycle now) {
   if (cache_.empty() || !cache_.is_ready(now) || !order_->can_push(now)) return false;
   for (std::size_t unit = 0; unit < units_.size(); ++unit) {
     if (!units_[unit]->can_push(now)) continue;
-    const VertexGroup group{delivered_++, cache_.leave()};
-    units_[unit]->push(now, group);
+    cache_.leave();
+    units_[unit]->push(now, delivered_);
     order_->push(now, static_cast<std::uint8_t>(unit));
-    event(now, group.number * units_.size() + unit);
+    event(now, delivered_++ * units_.size() + unit);
     return true;
   }
   return false;
 }
 
-// After the last group: an empty one to each vertex unit in turn.
+// After the last vertex: word of the end to each vertex unit in turn.
 bool VertexFetch::end_draw(Cycle now) {
-  if (triangle_ != job().work->triangles.size() || forming_ != 0 || delivered_ != groups_) return false;
-  if (groups_ == 0) ended_ = units_.size();
+  if (triangle_ != job().work->triangles.size() || delivered_ != vertex_) return false;
+  if (vertex_ == 0) ended_ = units_.size();
   bool moved = false;
   for (; ended_ < units_.size() && units_[ended_]->can_push(now); ++ended_) {
-    units_[ended_]->push(now, {});
+    units_[ended_]->push(now, kEndOfDraw);
     moved = true;
   }
   if (ended_ < units_.size()) return moved;
@@ -108,7 +107,7 @@ bool VertexFetch::index_is_here(Cycle now) {
 
 // Takes the indices of a triangle, then gathers its new vertices.
 bool VertexFetch::walk(Cycle now) {
-  if (triangle_ == job().work->triangles.size()) return close_group();
+  if (triangle_ == job().work->triangles.size()) return false;
   if (walk_from_ > now) return false;
   if (!in_triangle_) {
     if (!index_is_here(now)) return false;
@@ -125,18 +124,9 @@ bool VertexFetch::walk(Cycle now) {
   return true;
 }
 
-// Has the group that is being formed wait for its lines.
-bool VertexFetch::close_group() {
-  if (forming_ == 0 || !cache_.has_room()) return false;
-  cache_.enter(forming_);
-  ++groups_;
-  forming_ = 0;
-  return true;
-}
-
-// Asks for the lines of the next new vertex.
+// Asks for the lines of the next new vertex, which then waits for them.
 bool VertexFetch::gather(Cycle now) {
-  if (forming_ == threads_ && !close_group()) return false;
+  if (!cache_.has_room()) return false;
   const std::uint32_t stride = job().draw->vertex_stride;
   const std::uint32_t first = job().work->shaded_vertices[vertex_] * stride;
   const auto line_bytes = static_cast<std::uint32_t>(spec_.line_bytes);
@@ -150,11 +140,9 @@ bool VertexFetch::gather(Cycle now) {
     if (in_the_way_) return false;
   }
   in_vertex_ = false;
-  ++vertex_;
+  cache_.enter(static_cast<std::uint32_t>(vertex_++));
   ++vertices_read_;
-  ++forming_;
   --new_vertices_;
-  if (forming_ == threads_) close_group();
   return true;
 }
 
@@ -183,7 +171,7 @@ Step VertexFetch::waiting(Cycle now) {
     if (const Unit* unit = no_unit_free(now)) return blocked(*unit, next);
     return blocked(order_->consumer(), std::min(next, order_->next_free()));
   }
-  if (delivered_ == groups_ && triangle_ == job().work->triangles.size() && forming_ == 0) {
+  if (triangle_ == job().work->triangles.size()) {
     for (const auto* unit : units_) next = std::min(next, unit->next_free());
     return blocked(units_[ended_]->consumer(), next);
   }
@@ -204,8 +192,8 @@ std::vector<Statistic> VertexFetch::statistics() const {
 }
 
 std::string VertexFetch::state() const {
-  return "triangle " + std::to_string(triangle_) + ", groups delivered " + std::to_string(delivered_) +
-         " of " + std::to_string(groups_) + ", index lines taken " + std::to_string(taken_) + " of " +
+  return "triangle " + std::to_string(triangle_) + ", vertices delivered " + std::to_string(delivered_) +
+         " of " + std::to_string(vertex_) + ", index lines taken " + std::to_string(taken_) + " of " +
          std::to_string(asked_) + " asked for";
 }
 

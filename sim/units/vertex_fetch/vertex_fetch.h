@@ -9,8 +9,8 @@
 
 namespace splatscope::sim {
 
-// Reads indices and the vertices that are new among them, from video or AGP memory, and hands groups of
-// vertices to the vertex units: the oldest group to the unit that is free first, ties to the lower number.
+// Reads indices and the vertices that are new among them, from video or AGP memory, and hands them to
+// the vertex units one a cycle: the oldest to the unit that has room first, ties to the lower number.
 class VertexFetch final : public DrawUnit {
  public:
   // Ports to one place of memory; both null: no draw of the trace has a buffer there.
@@ -19,9 +19,9 @@ class VertexFetch final : public DrawUnit {
     MemoryPort* vertices = nullptr;
   };
 
-  VertexFetch(std::string name, Completion& completion, const Machine::Fetch& spec, int threads);
-  // `order` tells primitive assembly which unit has the next group.
-  void connect(const Ports& video, const Ports& agp, std::vector<Channel<VertexGroup>*> units,
+  VertexFetch(std::string name, Completion& completion, const Machine::Fetch& spec);
+  // `order` tells primitive assembly which unit has the next vertex.
+  void connect(const Ports& video, const Ports& agp, std::vector<Channel<VertexNumber>*> units,
                Channel<std::uint8_t>& order);
   // The place of each buffer of the trace.
   void set_places(std::vector<MemoryPlace> places) { places_ = std::move(places); }
@@ -38,17 +38,15 @@ class VertexFetch final : public DrawUnit {
   bool wants_index_line() const;
   std::uint32_t next_index_line() const;  // its address
   bool walk(Cycle now);
-  bool close_group();
   bool gather(Cycle now);
   bool index_is_here(Cycle now);
   Step waiting(Cycle now);
   const Unit* no_unit_free(Cycle now) const;
 
   Machine::Fetch spec_;
-  std::uint32_t threads_;
   Ports places_ports_[2];
   std::vector<MemoryPlace> places_;
-  std::vector<Channel<VertexGroup>*> units_;
+  std::vector<Channel<VertexNumber>*> units_;
   Channel<std::uint8_t>* order_ = nullptr;
   CachePipe cache_;
   MemoryPort* index_port_ = nullptr;
@@ -61,13 +59,11 @@ class VertexFetch final : public DrawUnit {
   std::uint32_t new_vertices_ = 0;
   bool in_triangle_ = false;
   Cycle walk_from_ = 0;
-  // The vertex being gathered, its next line, and the group that it goes into.
+  // The vertex being gathered, and its next line.
   std::size_t vertex_ = 0;
   std::uint32_t line_ = 0;
   bool in_vertex_ = false;
-  std::uint32_t forming_ = 0;
-  std::uint32_t groups_ = 0;     // formed
-  std::uint32_t delivered_ = 0;  // groups
+  std::uint32_t delivered_ = 0;  // vertices
   std::size_t ended_ = 0;        // units told that the draw ends
   const Unit* in_the_way_ = nullptr;
   std::uint64_t indices_read_ = 0, vertices_read_ = 0;

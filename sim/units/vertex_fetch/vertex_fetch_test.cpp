@@ -7,18 +7,18 @@
 namespace splatscope::sim {
 namespace {
 
-// Vertices of 32 bytes, two a line, in groups of two, for two vertex units that take what they get at once.
+// Vertices of 32 bytes, two a line, for two vertex units that take what they get at once.
 struct FetchBench {
   testing::Bench bench;
   VertexFetch fetch;
-  testing::Sink<VertexGroup> first, second;
+  testing::Sink<VertexNumber> first, second;
   testing::Sink<std::uint8_t> order_sink;
-  Channel<VertexGroup> to_first, to_second;
+  Channel<VertexNumber> to_first, to_second;
   Channel<std::uint8_t> order;
   testing::TestMemory indices, vertices;
 
   FetchBench(testing::TestDraw& draw, const Machine::Fetch& spec, Cycle second_from)
-      : fetch("vertex_fetch", bench.completion(), spec, 2),
+      : fetch("vertex_fetch", bench.completion(), spec),
         second(second_from),
         to_first((bench.add(fetch), bench.add(first), "to first"), fetch, first, 1),
         to_second((bench.add(second), "to second"), fetch, second, 1),
@@ -49,15 +49,14 @@ testing::TestDraw two_quads() {
   return draw;
 }
 
-TEST(VertexFetch, ReadsIndicesThenVerticesAndHandsOutGroupsInOrder) {
+TEST(VertexFetch, ReadsIndicesThenVerticesAndHandsThemOutInOrder) {
   testing::TestDraw draw = two_quads();
   Machine::Fetch spec;
   const FetchBench run(draw, spec, 0);
   // Index line asked for in 0, seen by memory in 1, there in 11. Then 3 clocks a triangle: vertices 0 1 2 in
-  // 11, 3 in 14, 4 5 6 in 17, 7 in 20. Vertex lines: there 11 cycles after they are asked for. Group 0 (0 1)
-  // leaves in 22; group 1 (2 3): line 1 was asked for in 11 and the memory takes one a cycle, so it is there
-  // in 23 and the group, entered in 14, leaves then; group 2 (4 5), asked for in 17, leaves in 28; group 3 (6
-  // 7), line asked for in 17 behind the other, in 29.
+  // 11, 3 in 14, 4 5 6 in 17, 7 in 20. Vertex lines: there 11 cycles after they are asked for, one a cycle:
+  // lines 0 and 1, asked for in 11, in 22 and 23; lines 2 and 3, asked for in 17, in 28 and 29. One vertex
+  // leaves a cycle.
   EXPECT_EQ(run.indices.memory.requests().size(), 1u);
   ASSERT_EQ(run.vertices.memory.requests().size(), 4u);
   EXPECT_EQ(run.vertices.memory.requests()[0].second.address, 0x10000u);
@@ -68,11 +67,11 @@ TEST(VertexFetch, ReadsIndicesThenVerticesAndHandsOutGroupsInOrder) {
     order.push_back(unit);
     left.push_back(at - 1);
   }
-  EXPECT_EQ(left, (std::vector<Cycle>{22, 23, 28, 29}));
+  EXPECT_EQ(left, (std::vector<Cycle>{22, 23, 24, 25, 28, 29, 30, 31}));
   // Each goes to the first unit with room: the slot of unit 0, taken in 23, is free in 24.
-  EXPECT_EQ(order, (std::vector<std::uint8_t>{0, 1, 0, 1}));
-  EXPECT_EQ(run.first.taken().back().second.vertices, 0u);  // the end of the draw
-  EXPECT_EQ(run.second.taken().back().second.vertices, 0u);
+  EXPECT_EQ(order, (std::vector<std::uint8_t>{0, 1, 0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(run.first.taken().back().second, kEndOfDraw);  // the end of the draw
+  EXPECT_EQ(run.second.taken().back().second, kEndOfDraw);
 }
 
 TEST(VertexFetch, GoesToTheUnitThatIsFree) {
@@ -80,20 +79,8 @@ TEST(VertexFetch, GoesToTheUnitThatIsFree) {
   const FetchBench run(draw, {}, 200);  // the second takes nothing until then
   std::vector<std::uint8_t> order;
   for (const auto& [at, unit] : run.order_sink.taken()) order.push_back(unit);
-  EXPECT_EQ(order, (std::vector<std::uint8_t>{0, 1, 0, 0}));
+  EXPECT_EQ(order, (std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(run.bench.done_at(), 202u);  // the end of the draw reaches the second unit in 201
-}
-
-TEST(VertexFetch, AnOddVertexGoesAlone) {
-  testing::TestDraw draw;
-  draw.add_triangle(3, 0, 1);
-  draw.work.shaded_vertices = {0, 1, 2};
-  const FetchBench run(draw, {}, 0);
-  std::uint32_t vertices = 0;
-  for (const auto& [at, group] : run.first.taken()) vertices += group.vertices;
-  for (const auto& [at, group] : run.second.taken()) vertices += group.vertices;
-  EXPECT_EQ(run.order_sink.taken().size(), 2u);
-  EXPECT_EQ(vertices, 3u);
 }
 
 }  // namespace

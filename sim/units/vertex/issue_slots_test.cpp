@@ -1,4 +1,4 @@
-#include "sim/units/vertex/schedule.h"
+#include "sim/units/vertex/issue_slots.h"
 
 #include <gtest/gtest.h>
 
@@ -20,61 +20,9 @@ Machine::Vertex nv25() {
   return machine::load("geforce4-ti4400").vertex;
 }
 
-Cycle issue_cycles(std::string_view body, const Machine::Vertex& spec) {
-  return group_schedules(issue_slots(program(body), spec), spec).back().issue_cycles;
-}
-
 std::size_t slots(std::string_view body, Machine::Vertex spec) {
   spec.pairing = true;
   return issue_slots(program(body), spec).size();
-}
-
-TEST(Schedule, AFourInstructionTransformTakesNvidiasPublishedClocks) {
-  // 125 M vertices/s of a transform on two units of 275 MHz: 4.4 clocks a vertex of one unit.
-  const Program transform =
-      program("dp4 oPos.x, v0, c0\ndp4 oPos.y, v0, c1\ndp4 oPos.z, v0, c2\ndp4 oPos.w, v0, c3\n");
-  EXPECT_DOUBLE_EQ(clocks_per_vertex(transform, nv25()), (3 * 4 + 1) / 3.0);
-  EXPECT_DOUBLE_EQ(clocks_per_vertex(program("m4x4 oPos, v0, c0\n"), nv25()), (3 * 4 + 1) / 3.0);
-}
-
-TEST(Schedule, OneInstructionAClock) {
-  EXPECT_EQ(issue_cycles("mov r0, v0\nmov r1, v0\nadd r2, r0, r1\n", plain()), 3u);
-}
-
-TEST(Schedule, AResultUsedAtOnceStallsForItsLatency) {
-  Machine::Vertex spec = plain();
-  spec.scalar_latency = 3;
-  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmul r1, v0, r0.x\n", spec), 4u);              // 0 and 3
-  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmov r2, v0\nmul r1, v0, r0.x\n", spec), 4u);  // 0, 1 and 3
-  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmov r2, v0\nmov r3, v0\nmul r1, v0, r0.x\n", spec), 4u);
-  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmul r1, v0, r2.y\n", spec), 2u);  // another register
-}
-
-TEST(Schedule, ThreadsHideTheLatency) {
-  Machine::Vertex spec = plain();
-  spec.vector_latency = 3;
-  EXPECT_EQ(issue_cycles("mov r0, v0\nmov r1, r0\nmov r2, r1\n", spec), 7u);  // 0, 3, 6
-  spec.threads = 3;
-  EXPECT_EQ(issue_cycles("mov r0, v0\nmov r1, r0\nmov r2, r1\n", spec), 9u);  // no cycle empty
-}
-
-TEST(Schedule, TheScalarUnitTakesOneInItsInterval) {
-  Machine::Vertex spec = plain();
-  spec.scalar_interval = 2;
-  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nrcp r1.x, v0.x\nrcp r2.x, v0.x\n", spec), 5u);  // 0, 2, 4
-  EXPECT_EQ(issue_cycles("rcp r0.x, v0.x\nmov r3, v0\nrcp r1.x, v0.x\n", spec), 3u);
-}
-
-TEST(Schedule, GroupsOfEachSize) {
-  Machine::Vertex spec = plain();
-  spec.threads = 3;
-  spec.vector_latency = 5;
-  const auto groups = group_schedules(issue_slots(program("mov r0, v0\nmov r1, v0\n"), spec), spec);
-  ASSERT_EQ(groups.size(), 3u);
-  for (std::size_t vertices = 1; vertices <= 3; ++vertices) {
-    EXPECT_EQ(groups[vertices - 1].issue_cycles, 2 * vertices);
-    EXPECT_EQ(groups[vertices - 1].result_cycles, 2 * vertices - 1 + 5);
-  }
 }
 
 TEST(IssueSlots, AVectorAndAScalarInstructionPair) {

@@ -1,0 +1,139 @@
+#include "sim/units/vertex/issue_logic.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "model/error.h"
+#include "model/machine/machine.h"
+#include "sim/units/vertex/throughput.h"
+
+namespace splatscope::sim {
+namespace {
+
+using Ends = std::vector<std::pair<Cycle, int>>;  // cycle of a vertex's last slot, its thread
+
+Machine::Vertex unit_of(int threads, int reload_cycles) {
+  Machine::Vertex spec;
+  spec.threads = threads;
+  spec.vector_latency = 3;
+  spec.scalar_latency = 3;
+  spec.scalar_interval = 2;
+  spec.reload_cycles = reload_cycles;
+  return spec;
+}
+
+isa::Program program_of(const std::string& text) {
+  return isa::load("vs.1.1\n" + text, "test");
+}
+
+const char* const kTransform =
+    "dp4 oPos.x, v0, c0\n"
+    "dp4 oPos.y, v0, c1\n"
+    "dp4 oPos.z, v0, c2\n"
+    "dp4 oPos.w, v0, c3\n";
+
+// The first `count` ends of a stream that never waits; the first vertex is taken before cycle 0, one at most
+// in every cycle after that.
+Ends ends_of(const std::string& text, const Machine::Vertex& spec, std::size_t count) {
+  const auto slots = issue_slots(program_of(text), spec);
+  IssueLogic logic(slots, spec);
+  logic.take();
+  Ends ends;
+  for (Cycle now = 0; ends.size() < count; ++now) {
+    if (const auto issued = logic.issue(); issued && issued->is_last) ends.emplace_back(now, issued->thread);
+    if (logic.next_free() == 0) logic.take();
+  }
+  return ends;
+}
+
+// The threads issue in turn: 0 1 2, 0 1 2, ... then nothing in cycle 12, as thread 0 issued last in 9 and is
+// reloaded in 10, 11 and 12.
+TEST(IssueLogic, three_threads_of_four_slots_take_turns) {
+  EXPECT_EQ(ends_of(kTransform, unit_of(3, 3), 6),
+            (Ends{{9, 0}, {10, 1}, {11, 2}, {22, 0}, {23, 1}, {24, 2}}));
+}
+
+TEST(IssueLogic, one_thread_without_reloading_issues_in_every_cycle) {
+  EXPECT_EQ(ends_of(kTransform, unit_of(1, 0), 3), (Ends{{3, 0}, {7, 0}, {11, 0}}));
+}
+
+TEST(IssueLogic, waits_for_an_operand) {
+  // Issue in 0, 3, 6; a second thread fills the clocks between: 1, 4, 7.
+  const std::string chain = "add r0, v0, c0\nadd r0, r0, c0\nmov oPos, r0\n";
+  EXPECT_EQ(ends_of(chain, unit_of(1, 0), 2), (Ends{{6, 0}, {13, 0}}));
+  EXPECT_EQ(ends_of(chain, unit_of(2, 0), 2), (Ends{{6, 0}, {7, 1}}));
+}
+
+TEST(IssueLogic, one_scalar_instruction_in_two_clocks) {
+  // Thread 0 issues its RCP in 0; thread 1's has to wait for cycle 2; moves in 3 and 5.
+  const std::string reciprocal = "rcp r0.x, c0.x\nmov oPos, r0.x\n";
+  EXPECT_EQ(ends_of(reciprocal, unit_of(2, 8), 2), (Ends{{3, 0}, {5, 1}}));
+}
+
+TEST(IssueLogic, a_short_result_does_not_overtake_a_long_one) {
+  // r0.x: RSQ in 0, there in 9. MOV may write it in 8 at the earliest, to be there in 9; oPos in 9.
+  Machine::Vertex spec = unit_of(1, 0);
+  spec.vector_latency = 1;
+  spec.scalar_latency = 9;
+  EXPECT_EQ(ends_of("rsq r0.x, c0.x\nmov r0.x, c1\nmov oPos, r0.x\n", spec, 1), (Ends{{9, 0}}));
+}
+
+TEST(IssueLogic, results_come_after_the_last_slot) {
+  Machine::Vertex spec = unit_of(1, 0);
+  spec.scalar_latency = 9;
+  const auto slots = issue_slots(program_of("rsq r0.x, c0.x\nmov oPos, c0\n"), spec);
+  IssueLogic logic(slots, spec);
+  logic.take();
+  const auto first = logic.issue();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->slot, 0u);
+  EXPECT_FALSE(first->is_last);
+  const auto last = logic.issue();  // in cycle 1; the RSQ of cycle 0 takes until 9
+  ASSERT_TRUE(last);
+  EXPECT_TRUE(last->is_last);
+  EXPECT_EQ(last->result, 8u);
+  EXPECT_EQ(logic.next_free(), 0u);
+}
+
+TEST(IssueLogic, no_more_vertices_than_threads) {
+  const Machine::Vertex spec = unit_of(2, 0);
+  const auto slots = issue_slots(program_of(kTransform), spec);
+  IssueLogic logic(slots, spec);
+  EXPECT_TRUE(logic.is_at_rest());
+  EXPECT_EQ(logic.take(), 0);
+  EXPECT_EQ(logic.take(), 1);
+  EXPECT_EQ(logic.next_free(), kNever);
+  EXPECT_THROW(logic.take(), ModelError);
+}
+
+// NVIDIA's 125 M vertices a second of two units at 275 MHz are 4.4.
+TEST(Throughput, transform_on_the_geforce4) {
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load("geforce4-ti4400").vertex),
+                   13.0 / 3);
+}
+
+TEST(Throughput, transform_on_the_radeon) {
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load("radeon-8500").vertex), 4);
+}
+
+TEST(Throughput, says_which_slot_waits) {
+  const auto slots = issue_slots(program_of("add r0, v0, c0\nadd r0, r0, c0\nmov oPos, r0\n"), unit_of(1, 4));
+  const Throughput steady = throughput(slots, unit_of(1, 4));
+  EXPECT_DOUBLE_EQ(steady.clocks_per_vertex, 11);
+  EXPECT_EQ(steady.waits, (std::vector<double>{4, 2, 2}));
+}
+
+// Two slots a vertex, of which the scalar unit takes one every `scalar_interval` clocks. Four threads in step
+// would issue RCP in 0, 2, 4, 6 and MOV in 3, 5, 7, 9: 2.5 clocks a vertex.
+TEST(Throughput, threads_spread_out_over_the_scalar_unit) {
+  const isa::Program program = program_of("rcp r0.x, c0.x\nmov oPos, r0.x\n");
+  Machine::Vertex spec = unit_of(4, 0);
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(program, spec), 2);
+  spec.scalar_interval = 5;
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(program, spec), 5);
+}
+
+}  // namespace
+}  // namespace splatscope::sim
