@@ -284,6 +284,9 @@ void set(Machine& machine, std::string_view assignment) {
   const std::string name(assignment.substr(0, equals));
   const std::string value(assignment.substr(equals + 1));
   const Parameter& parameter = require(name, place);
+  if (value.find_first_of("\r\n") != std::string::npos) {
+    place.fail(fmt::format("the value of {} has more than one line, expected {}", name, expected(parameter)));
+  }
   const bool is_text = std::holds_alternative<ChoiceField>(parameter.field) && !value.starts_with('"');
   toml::table table;
   try {

@@ -120,6 +120,8 @@ TEST(Machine, SetRefusesWhatAFileMayNotHold) {
             "--set: vertex.units is out of range (0), expected an integer, 1 to 16");
   EXPECT_EQ(set_message("vertex.units=two"),
             "--set: vertex.units has no valid value in \"vertex.units=two\", expected an integer, 1 to 16");
+  EXPECT_EQ(set_message("vertex.units=2\n[clock]\ncore_megahertz=1"),
+            "--set: the value of vertex.units has more than one line, expected an integer, 1 to 16");
   EXPECT_EQ(set_message("agp.units=2"),
             "--set: unknown key agp.units, expected one of bytes_per_clock, latency_nanoseconds, queue");
   EXPECT_EQ(set_message("texture.line_bytes=128"),
