@@ -41,9 +41,11 @@ void run(const Options& options, bool quiet) {
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
+  auto opened = studies::open_input(options.input);
   traces::prepare_output_folder(options.out);
   ProgressBar recording("recording", quiet);
-  const studies::Input input = studies::load_input(options.input, machine, recording.callback());
+  const studies::Input input =
+      studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
   ProgressBar running("running", quiet);
   const studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback());

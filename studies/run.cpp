@@ -98,11 +98,16 @@ std::string_view name(Fidelity fidelity) {
   throw ModelError("a fidelity without a name");
 }
 
-Input load_input(const std::string& scene_or_trace, const Machine& machine, const Progress& progress) {
-  if (std::filesystem::path(scene_or_trace).extension() == ".trace") {
-    return {scene_or_trace, traces::read_trace(scene_or_trace), {}, {}};
-  }
-  const traces::Scene scene = traces::load_scene(scene_or_trace);
+std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace) {
+  if (std::filesystem::path(scene_or_trace).extension() == ".trace")
+    return traces::read_trace(scene_or_trace);
+  return traces::load_scene(scene_or_trace);
+}
+
+Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& name, const Machine& machine,
+                 const Progress& progress) {
+  if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}};
+  const traces::Scene& scene = std::get<traces::Scene>(opened);
   traces::Recording recording = traces::record(scene, machine.numbers, progress);
   return {scene.name, std::move(recording.trace), recording.counts, scene.skipped};
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "model/machine/machine.h"
 #include "model/render.h"
@@ -31,9 +32,13 @@ struct Input {
   traces::SkipCounts skipped;
 };
 
-// A trace file (".trace"), a scene file, or a ready scene by its name; a scene is recorded for `machine`,
-// whose number formats the captured weights depend on.
-Input load_input(const std::string& scene_or_trace, const Machine& machine, const Progress& progress = {});
+// A trace file (".trace"), a scene file, or a ready scene by its name: read and checked.
+std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace);
+
+// A scene is recorded for `machine`, whose number formats the captured weights depend on. `name` is a
+// trace's.
+Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& name, const Machine& machine,
+                 const Progress& progress = {});
 
 struct FrameRun {
   Rendered rendered;

@@ -174,12 +174,15 @@ TEST(CommandLine, TraceOfASceneRunsAsTheScene) {
 TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
+  folder.file("wrong.toml", "[surfel]\n");
   folder.file("taken", "a file where a folder is wanted");
   const auto before = folder.names();
   const auto refused = [&](std::vector<std::string> arguments, const std::string& part) {
     expect_refused(run_program(arguments, folder.path()), part);
     EXPECT_EQ(folder.names(), before);
   };
+  refused({"run", "wrong.toml", "--out", "made"}, "wrong.toml:1: ");
+  refused({"run", "none.trace", "--out", "made"}, "none.trace: ");
   refused({"run", "small.toml", "--out", "taken"}, "taken: ");
   refused({"run", "small.toml", "--out", "taken/below"}, "taken/below: ");
   refused({"run", "small.toml", "--fidelity", "exact"}, "--fidelity: ");
