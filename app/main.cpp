@@ -26,7 +26,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    std::cerr << "splatscope: " << error.what() << " (--help says what is expected)\n";
+    return kBadInput;
   }
   return invocation.status;
 }
