@@ -120,7 +120,13 @@ void add_shader_command(CLI::App& app) {
       ->option_text("ieee|nv20");
   debug_part->callback([options] { debug(*options); });
 
-  run->footer("Example: splatscope shader run --batch cases.jsonl --arithmetic nv20");
+  run->footer(
+      "One result a line: {\"id\", \"outputs\"}, or {\"id\", \"error\": \"LINE: what\"} with the program's "
+      "line, or 0\n"
+      "where the case itself is wrong. A wrong case does not end the batch; after a line that is no JSON "
+      "object\n"
+      "the exit status is 2 at the end.\n"
+      "Example: splatscope shader run --batch cases.jsonl --arithmetic nv20");
   run->callback([options] { run_batch(*options); });
 }
 

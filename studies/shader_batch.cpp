@@ -7,6 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <streambuf>
+#include <utility>
 
 #include "model/error.h"
 #include "model/isa/register_names.h"
@@ -19,7 +21,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::string_view kProgramName = "program";
+// Names in the places of errors: of the program in the case, and of the case itself.
+constexpr std::string_view kProgramName = "program", kCaseName = "case";
+
+constexpr std::size_t kLongestLine = std::size_t{16} << 20;  // bytes
 
 ordered_json hex_of(const Vec4& value) {
   ordered_json hex = ordered_json::array();
@@ -73,40 +78,68 @@ ordered_json run_pixel(const ShaderCase& test, const isa::Program& program) {
   return outputs;
 }
 
-// "2: column 5: rule" of "program:2:5: rule".
+// "2: column 5: rule" of "program:2:5: rule"; "0: what" of "case: what".
 std::string place_and_rule(const UserError& error) {
-  const std::string text = std::string(error.what()).substr(kProgramName.size() + 1);
-  const std::size_t column = text.find(':'), rule = text.find(':', column + 1);
-  return fmt::format("{}: column {}:{}", text.substr(0, column), text.substr(column + 1, rule - column - 1),
-                     text.substr(rule + 1));
+  const std::string_view text = error.what();
+  if (!text.starts_with(fmt::format("{}:", kProgramName)))
+    return fmt::format("0{}", text.substr(kCaseName.size()));
+  const std::string_view place = text.substr(kProgramName.size() + 1);
+  const std::size_t column = place.find(':'), rule = place.find(':', column + 1);
+  return fmt::format("{}: column {}:{}", place.substr(0, column), place.substr(column + 1, rule - column - 1),
+                     place.substr(rule + 1));
+}
+
+// One line, without its end. Of a longer line than kLongestLine, one byte more than that and the rest is
+// dropped. False at the end of the text.
+bool read_line(std::istream& in, std::string& text) {
+  text.clear();
+  std::streambuf& bytes = *in.rdbuf();
+  constexpr int kEnd = std::char_traits<char>::eof();
+  int byte = bytes.sbumpc();
+  if (byte == kEnd) return false;
+  for (; byte != kEnd && byte != '\n'; byte = bytes.sbumpc())
+    if (text.size() <= kLongestLine) text.push_back(static_cast<char>(byte));
+  return true;
+}
+
+ordered_json outputs_of(const ShaderCase& test, Arithmetic arithmetic) {
+  const isa::Program program = test.program(kProgramName);
+  const bool is_vertex = program.version.kind == isa::ShaderKind::vertex;
+  return is_vertex ? run_vertex(test, program, arithmetic) : run_pixel(test, program);
 }
 
 }  // namespace
 
-std::string run_shader_case(std::string_view text, Arithmetic arithmetic, std::string_view file, int line) {
-  const ShaderCase test(text, file, line);
-  ordered_json result{{"id", test.id()}};
-  isa::Program program;
+ShaderResult run_shader_case(std::string_view text, Arithmetic arithmetic) {
+  ordered_json result{{"id", nullptr}};
+  bool is_object = false;
   try {
-    program = test.program(kProgramName);
+    if (text.size() > kLongestLine)
+      throw UserError(kCaseName, 0, fmt::format("a line is longer than {} bytes", kLongestLine));
+    ordered_json object = parse_case(text, kCaseName, 0);
+    is_object = true;
+    if (object.contains("id") && is_case_id(object["id"])) result["id"] = object["id"];
+    result["outputs"] = outputs_of(ShaderCase::of_object(std::move(object), kCaseName, 0), arithmetic);
   } catch (const UserError& error) {
-    if (!std::string_view(error.what()).starts_with(fmt::format("{}:", kProgramName))) throw;
     result["error"] = place_and_rule(error);
-    return result.dump();
   }
-  const bool is_vertex = program.version.kind == isa::ShaderKind::vertex;
-  result["outputs"] = is_vertex ? run_vertex(test, program, arithmetic) : run_pixel(test, program);
-  return result.dump();
+  // A message may quote half a character.
+  return {result.dump(-1, ' ', false, ordered_json::error_handler_t::replace), is_object};
 }
 
 void run_shader_batch(std::istream& cases, std::string_view file, Arithmetic arithmetic,
                       std::ostream& results) {
-  int line = 0;
-  for (std::string text; std::getline(cases, text);) {
+  int line = 0, first_wrong = 0, wrong = 0;
+  for (std::string text; read_line(cases, text);) {
     ++line;
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
-    results << run_shader_case(text, arithmetic, file, line) << '\n';
+    const ShaderResult result = run_shader_case(text, arithmetic);
+    results << result.json << '\n';
+    if (!result.is_object && wrong++ == 0) first_wrong = line;
   }
+  if (wrong == 0) return;
+  throw UserError(file, first_wrong,
+                  fmt::format("this is no case, expected a JSON object (lines like it: {})", wrong));
 }
 
 }  // namespace splatscope::studies

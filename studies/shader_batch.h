@@ -9,12 +9,18 @@
 // Programs on given registers: `splatscope shader run --batch`.
 namespace splatscope::studies {
 
-// One case, a JSON object, to one result, a JSON object on one line (docs: COMMANDS, `shader run`). A program
-// that does not load gives {"id", "error": "line: column n: rule"}; a case that is no case throws UserError
-// at `file`:`line`.
-std::string run_shader_case(std::string_view text, Arithmetic arithmetic, std::string_view file, int line);
+struct ShaderResult {
+  std::string json;  // an object on one line
+  bool is_object;    // whether the case was a JSON object, of any content
+};
 
-// A line in, a line out; empty lines are skipped.
+// One case, a JSON object, to one result (docs/shaders.md). What is wrong with it gives {"id", "error":
+// "LINE: what"}: LINE is that of the program, or 0 where the case itself is wrong; the id is null where the
+// case has none, or none that is text or a number.
+ShaderResult run_shader_case(std::string_view text, Arithmetic arithmetic);
+
+// A line in, a line out; empty lines are skipped. Throws UserError at `file` and the first line that was no
+// JSON object, after the last line.
 void run_shader_batch(std::istream& cases, std::string_view file, Arithmetic arithmetic,
                       std::ostream& results);
 

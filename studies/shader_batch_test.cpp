@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 std::string run(const std::string& text, Arithmetic arithmetic = Arithmetic::ieee) {
-  return run_shader_case(text, arithmetic, "cases.jsonl", 7);
+  return run_shader_case(text, arithmetic).json;
 }
 
 TEST(ShaderBatch, GivesEveryOutputThatTheProgramWrites) {
@@ -50,22 +50,91 @@ TEST(ShaderBatch, AProgramThatDoesNotLoadIsAnErrorWithItsLine) {
             R"x({"id":"b","error":"1: column 1: the tokens end, expected a version (token 0)"})x");
 }
 
-std::string error_of(const std::string& text) {
-  try {
-    return run(text);
-  } catch (const UserError& error) {
-    return error.what();
-  }
+TEST(ShaderBatch, ACaseThatIsWrongIsAnErrorOfLine0) {
+  EXPECT_EQ(run(R"({"id": "a"})"), R"x({"id":"a","error":"0: expected \"program\" or \"tokens\""})x");
+  EXPECT_EQ(run(R"({"id": 2, "program": "vs_1_1\nmov oPos, v0", "tokens": []})"),
+            R"x({"id":2,"error":"0: expected \"program\" or \"tokens\""})x");
+  EXPECT_TRUE(
+      run(R"({"id": "a", "prgram": ""})").starts_with(R"({"id":"a","error":"0: unknown key \"prgram\",)"));
+  const std::string program = R"({"id": "a", "program": "vs_1_1\nmov oPos, v0", )";
+  EXPECT_EQ(run(program + R"("inputs": {"v16": []}})"),
+            R"({"id":"a","error":"0: inputs has \"v16\", expected v0 to v15"})");
+  EXPECT_EQ(run(program + R"("inputs": {"v0": ["x", "0", "0", "0"]}})"),
+            R"({"id":"a","error":"0: v0 is \"x\", expected 32 bits in hex"})");
+  EXPECT_EQ(run(program + R"("inputs": {"v0": [[[1]], "0", "0", "0"]}})"),
+            R"({"id":"a","error":"0: v0 is no text, expected 32 bits in hex"})");
+  EXPECT_EQ(run(program + R"("constants": {"c0": {"a": [1]}}})"),
+            R"({"id":"a","error":"0: c0 is no array of four, expected four words in hex"})");
+  EXPECT_EQ(run(R"({"id": "t", "tokens": ["fffe0101", "123456789"]})"),
+            R"({"id":"t","error":"0: a token is \"123456789\", expected 32 bits in hex"})");
+  EXPECT_EQ(run(R"({"id": [1], "program": "vs_1_1\nmov oPos, v0"})"),
+            R"({"id":null,"error":"0: \"id\" is neither text nor a number"})");
 }
 
-TEST(ShaderBatch, ACaseThatIsNoneIsAUserError) {
-  EXPECT_EQ(error_of("[1]"), "cases.jsonl:7: this is no JSON object, expected a case");
-  EXPECT_EQ(error_of(R"({"id": "a"})"), "cases.jsonl:7: expected \"program\" or \"tokens\"");
-  EXPECT_EQ(error_of(R"({"prgram": ""})").substr(0, 36), "cases.jsonl:7: unknown key \"prgram\",");
-  EXPECT_EQ(error_of(R"({"program": "vs_1_1\nmov oPos, v0", "inputs": {"v16": []}})"),
-            "cases.jsonl:7: inputs has \"v16\", expected v0 to v15");
-  EXPECT_EQ(error_of(R"({"program": "vs_1_1\nmov oPos, v0", "inputs": {"v0": ["x", "0", "0", "0"]}})"),
-            "cases.jsonl:7: v0 is \"x\", expected 32 bits in hex");
+TEST(ShaderBatch, MessagesQuoteLittle) {
+  EXPECT_LT(run(R"({"id": 1, ")" + std::string(100000, 'k') + R"(": 0})").size(), 200u);
+  EXPECT_LT(run(R"({"id": 1, "tokens": [")" + std::string(100000, '1') + R"("]})").size(), 200u);
+  // The limit falls within the last character.
+  std::string e_acute;
+  for (int i = 0; i < 32; ++i) e_acute += "\xc3\xa9";
+  EXPECT_TRUE(json::accept(run(R"({"id": 1, "x)" + e_acute + R"(": 0})")));
+}
+
+TEST(ShaderBatch, DeeplyNestedJsonIsAnError) {
+  const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+  const std::string error = R"({"id":null,"error":"0: this is nested deeper than 8, expected a case"})";
+  EXPECT_EQ(run(R"({"id": )" + deep + R"(, "program": "vs_1_1\nmov oPos, v0\n"})"), error);
+  EXPECT_EQ(run(R"({"id": 1, "program": "vs_1_1\nmov oPos, c0\n", "constants": {"c0": )" + deep + "}}"),
+            error);
+  EXPECT_EQ(run(deep), error);
+}
+
+TEST(ShaderBatch, ALineThatIsNoObjectIsAnsweredAndTheBatchGoesOn) {
+  const std::string good = R"({"id": 1, "program": "vs_1_1\nmov oPos, v0\n"})";
+  const std::string one = R"({"id":1,"outputs":{"oPos":["00000000","00000000","00000000","3f800000"]}})"
+                          "\n";
+  const std::string none = R"({"id":null,"error":"0: this is no JSON object, expected a case"})"
+                           "\n";
+  const std::string too_long = R"({"id":null,"error":"0: a line is longer than 16777216 bytes"})"
+                               "\n";
+  const std::string padding((std::size_t{16} << 20) + 1, ' ');
+  std::istringstream cases(good + "\n\n[1]\n" + good + "\n{\"id\":\n" + "{" + padding + "}\n" + good);
+  std::ostringstream results;
+  try {
+    run_shader_batch(cases, "cases.jsonl", Arithmetic::ieee, results);
+    FAIL() << "no UserError";
+  } catch (const UserError& error) {
+    EXPECT_STREQ(error.what(), "cases.jsonl:3: this is no case, expected a JSON object (lines like it: 3)");
+  }
+  EXPECT_EQ(results.str(), one + none + one + none + too_long + one);
+}
+
+TEST(ShaderBatch, AWrongCaseDoesNotEndABatch) {
+  std::istringstream cases("{\"id\": 1}\n{\"id\": \"b\", \"program\": \"vs_1_1\\n\"}\n");
+  std::ostringstream results;
+  EXPECT_NO_THROW(run_shader_batch(cases, "cases.jsonl", Arithmetic::ieee, results));
+  EXPECT_EQ(results.str(), R"x({"id":1,"error":"0: expected \"program\" or \"tokens\""})x"
+                           "\n"
+                           R"x({"id":"b","error":"1: column 1: a program has at least one instruction"})x"
+                           "\n");
+}
+
+// The registers of the pixel unit hold no NaN.
+TEST(ShaderBatch, NanCountsAsZeroInAPixelProgram) {
+  const std::string nan = R"(["7fc00000", "ffc00001", "7f800001", "7fffffff"])";
+  const std::string zero = R"("outputs":{"r0":["00000000","00000000","00000000","00000000"]})";
+  for (const std::string program :
+       {R"(ps_1_1\nmov r0, v0\n)", R"(ps_1_1\nmov r0, v1\n)", R"(ps_1_1\nmov_sat r0, v0\n)",
+        R"(ps_1_1\nmov r0, c0\n)", R"(ps_1_1\ntex t0\nmov r0, t0\n)", R"(ps_1_1\ntex t0\nmov_sat r0, t0\n)",
+        R"(ps_1_1\ntexcoord t0\nmov r0.rgb, t0\n+ mov r0.a, v0\n)",
+        R"(ps_1_4\ntexcrd r0.rgb, t0\nmov r0.a, r0.b\n)", R"(ps_1_4\ntexld r0, t0\nmov r1, r0\n)",
+        R"(ps_1_4\ntexld r0, t0\n)"}) {
+    const std::string result =
+        run(R"({"id": 1, "program": ")" + program + R"(", "inputs": {"v0": )" + nan + R"(, "v1": )" + nan +
+            R"(}, "constants": {"c0": )" + nan + R"(}, "texcoords": {"t0": )" + nan +
+            R"(}, "textures": {"t0": )" + nan + "}}");
+    EXPECT_NE(result.find(zero), std::string::npos) << program << ' ' << result;
+  }
 }
 
 TEST(ShaderBatch, TheVectorsOfTheNv20) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <utility>
 
 #include "model/error.h"
 #include "model/isa/tokens.h"
@@ -17,17 +18,46 @@ using nlohmann::ordered_json;
 
 constexpr int kConstants = 96;
 constexpr int kInputs = 16;
+constexpr int kDepth = 8;                 // of JSON; a case needs 2
+constexpr std::size_t kLongestText = 32;  // of what a message quotes
+
+std::string quote_of(std::string_view text) {
+  if (text.size() <= kLongestText) return fmt::format("\"{}\"", text);
+  return fmt::format("\"{}...\"", text.substr(0, kLongestText));
+}
 
 }  // namespace
 
-ShaderCase::ShaderCase(std::string_view text, std::string_view file, int line) : file_(file), line_(line) {
-  case_ = ordered_json::parse(text, nullptr, false);
-  if (!case_.is_object()) fail("this is no JSON object, expected a case");
+ordered_json parse_case(std::string_view text, std::string_view file, int line) {
+  const auto limit_depth = [&](int depth, ordered_json::parse_event_t, ordered_json&) {
+    if (depth > kDepth)
+      throw UserError(file, line, fmt::format("this is nested deeper than {}, expected a case", kDepth));
+    return true;
+  };
+  ordered_json object = ordered_json::parse(text, limit_depth, false);
+  if (!object.is_object()) throw UserError(file, line, "this is no JSON object, expected a case");
+  return object;
+}
+
+bool is_case_id(const ordered_json& id) {
+  return id.is_string() || id.is_number();
+}
+
+ShaderCase::ShaderCase(std::string_view text, std::string_view file, int line)
+    : ShaderCase(file, line, parse_case(text, file, line)) {}
+
+ShaderCase ShaderCase::of_object(ordered_json object, std::string_view file, int line) {
+  return {file, line, std::move(object)};
+}
+
+ShaderCase::ShaderCase(std::string_view file, int line, ordered_json object)
+    : case_(std::move(object)), file_(file), line_(line) {
   constexpr std::string_view kKeys[] = {"id",     "program",   "tokens",  "constants",
                                         "inputs", "texcoords", "textures"};
   for (const auto& [key, value] : case_.items())
     if (std::ranges::find(kKeys, key) == std::end(kKeys))
-      fail(fmt::format("unknown key \"{}\", expected one of {}", key, fmt::join(kKeys, ", ")));
+      fail(fmt::format("unknown key {}, expected one of {}", quote_of(key), fmt::join(kKeys, ", ")));
+  if (case_.contains("id") && !is_case_id(case_["id"])) fail("\"id\" is neither text nor a number");
 }
 
 void ShaderCase::fail(std::string_view message) const {
@@ -49,18 +79,19 @@ isa::Program ShaderCase::program(std::string_view name) const {
 }
 
 std::uint32_t ShaderCase::word_of(std::string_view what, const ordered_json& hex) const {
+  if (!hex.is_string()) fail(fmt::format("{} is no text, expected 32 bits in hex", what));
   std::uint32_t word = 0;
-  const std::string text = hex.is_string() ? hex.get<std::string>() : "";
+  const auto& text = hex.get_ref<const std::string&>();
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, word, 16);
   if (text.empty() || stop != end || error != std::errc{})
-    fail(fmt::format("{} is {}, expected 32 bits in hex", what, hex.dump()));
+    fail(fmt::format("{} is {}, expected 32 bits in hex", what, quote_of(text)));
   return word;
 }
 
 Vec4 ShaderCase::vector_of(std::string_view name, const ordered_json& hex) const {
   if (!hex.is_array() || hex.size() != 4)
-    fail(fmt::format("{} is {}, expected four words in hex", name, hex.dump()));
+    fail(fmt::format("{} is no array of four, expected four words in hex", name));
   Vec4 value{};
   for (std::size_t i = 0; i < 4; ++i) value[i] = std::bit_cast<float>(word_of(name, hex[i]));
   return value;
@@ -75,7 +106,7 @@ void ShaderCase::registers(std::string_view group, char letter, int count, Set s
     const char* end = name.data() + name.size();
     const bool number = name.size() > 1 && std::from_chars(name.data() + 1, end, index).ptr == end;
     if (!number || name[0] != letter || index < 0 || index >= count)
-      fail(fmt::format("{} has \"{}\", expected {}0 to {}{}", group, name, letter, letter, count - 1));
+      fail(fmt::format("{} has {}, expected {}0 to {}{}", group, quote_of(name), letter, letter, count - 1));
     set(static_cast<std::size_t>(index), vector_of(name, value));
   }
 }

@@ -14,13 +14,20 @@
 // Registers that a user gives a program, as JSON (docs: COMMANDS, `shader run`).
 namespace splatscope::studies {
 
+// Text to a JSON object, which may still be no case. Throws UserError at `file`:`line` where it is none, or
+// is nested deeper than any case.
+nlohmann::ordered_json parse_case(std::string_view text, std::string_view file, int line);
+
+// Whether the "id" of a case is text or a number, as it has to be.
+bool is_case_id(const nlohmann::ordered_json& id);
+
 // One case. Values are binary32 bits in hex; what is not given is 0 (vertex inputs: 0, 0, 0, 1).
 class ShaderCase {
  public:
   // Throws UserError at `file`:`line` where the text is no case.
   ShaderCase(std::string_view text, std::string_view file, int line);
-
-  nlohmann::ordered_json id() const { return case_.value("id", nlohmann::ordered_json(nullptr)); }
+  // The same, of an object already parsed.
+  static ShaderCase of_object(nlohmann::ordered_json object, std::string_view file, int line);
 
   // The program in the case, validated. Its own errors are UserErrors of `name`.
   isa::Program program(std::string_view name) const;
@@ -31,6 +38,7 @@ class ShaderCase {
   pixel::Sampler textures() const;                            // constant 1x1 textures, for lane 0
 
  private:
+  ShaderCase(std::string_view file, int line, nlohmann::ordered_json object);
   [[noreturn]] void fail(std::string_view message) const;
   std::uint32_t word_of(std::string_view what, const nlohmann::ordered_json& hex) const;
   Vec4 vector_of(std::string_view name, const nlohmann::ordered_json& hex) const;

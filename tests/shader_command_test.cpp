@@ -89,6 +89,24 @@ TEST(ShaderCommand, RunsABatchInEitherArithmetic) {
       2);
 }
 
+TEST(ShaderCommand, ABatchGoesOnAfterALineThatIsNoCase) {
+  const ScratchFolder folder;
+  const std::string good = "{\"id\": 1, \"program\": \"vs_1_1\\nmov oPos, v0\\n\"}\n";
+  const std::string answer =
+      "{\"id\":1,\"outputs\":{\"oPos\":[\"00000000\",\"00000000\",\"00000000\",\"3f800000\"]}}\n";
+  folder.file("cases.jsonl", "{\"id\": " + std::string(200000, '[') + "\n" + good);
+  const Outcome outcome = run_program({"shader", "run", "--batch", "cases.jsonl"}, folder.path());
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.error, "cases.jsonl:1: this is no case, expected a JSON object (lines like it: 1)\n");
+  EXPECT_EQ(outcome.out,
+            "{\"id\":null,\"error\":\"0: this is nested deeper than 8, expected a case\"}\n" + answer);
+
+  folder.file("wrong.jsonl", "{\"id\": 7, \"tokens\": [1]}\n" + good);
+  const Outcome wrong = run_program({"shader", "run", "--batch", "wrong.jsonl"}, folder.path());
+  EXPECT_EQ(wrong.status, 0);
+  EXPECT_EQ(wrong.out, "{\"id\":7,\"error\":\"0: a token is no text, expected 32 bits in hex\"}\n" + answer);
+}
+
 TEST(ShaderCommand, DebugTakesCommandsFromAPipe) {
   const ScratchFolder folder;
   folder.file("a.vs", kProgram);

@@ -106,6 +106,9 @@ void validate(const Program& program) {
   for (const Instruction& instruction : program.instructions)
     if (find_opcode(program.version, instruction.opcode) == nullptr)
       reject(program, instruction, fmt::format("{} has no such instruction", to_string(program.version)));
+  for (const Definition& definition : program.definitions)
+    if (definition.before != 0)
+      throw UserError(program.name, definition.line, definition.column, "def must precede the instructions");
   program.version.kind == ShaderKind::vertex ? validate_vertex(program) : validate_pixel(program);
 }
 

@@ -43,6 +43,15 @@ TEST(Validate, EveryRunnableProgramOfTheOracleIsAccepted) {
   }
 }
 
+TEST(Validate, DefinitionsPrecedeTheInstructions) {
+  EXPECT_EQ(error_of("vs_1_1\nmov r0, v0\ndef c0, 1, 1, 1, 1\nadd oPos, r0, c0\n"),
+            "p:3:1: def must precede the instructions");
+  EXPECT_EQ(error_of("ps_1_4\nmov r0, c0\n\n  def c0, 1, 1, 1, 1\n"),
+            "p:4:3: def must precede the instructions");
+  EXPECT_EQ(error_of("ps_1_1\ndef c0, 1, 1, 1, 1\ndef c1, 0, 0, 0, 0\nadd r0, c0, c1\n"), "accepted");
+  EXPECT_EQ(error_of("vs_1_1\ndcl_position v0\ndef c0, 1, 1, 1, 1\nmul oPos, v0, c0\n"), "accepted");
+}
+
 // Text and tokens break the same rules; the tokens' places are lines of their disassembly.
 TEST(Validate, TokensAreCheckedLikeText) {
   const json vectors = oracle("invalid_programs.json");

@@ -126,14 +126,10 @@ void commit(const isa::Instruction& instruction, ResultFormat format, const Regi
     if (!(destination.mask & (1u << component))) continue;
     const float* from = result.component[component];
     float* out = to.component[component];
-    for (int i = 0; i < count; ++i) out[i] = std::min(std::max(from[i] * scale, low), high);
+    for (int i = 0; i < count; ++i) out[i] = in_range(from[i] * scale, low, high);
     if (format.steps)
       for (int i = 0; i < count; ++i) out[i] = std::nearbyint(out[i] * 255.0f) / 255.0f;
   }
-}
-
-void clamp_lanes(const float* from, float low, float high, float* to, int count) {
-  for (int i = 0; i < count; ++i) to[i] = std::min(std::max(from[i], low), high);
 }
 
 bool is_texture(isa::Version version, isa::Opcode opcode) {
@@ -239,7 +235,7 @@ void PixelProgram::Decoded::prepare(std::span<const Vec4> values, const Fragment
       if (!(constants & (1u << i))) continue;
       const Vec4 value = defined[i] ? *defined[i] : i < values.size() ? values[i] : Vec4{};
       std::fill_n(registers.constants[i].component[component], count,
-                  std::clamp(value[component], -1.0f, 1.0f));
+                  in_range(value[component], -1.0f, 1.0f));
     }
     if (inputs & 1u)
       clamp_lanes(batch.v0[component], 0.0f, 1.0f, registers.inputs[0].component[component], count);

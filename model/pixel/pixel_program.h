@@ -47,7 +47,7 @@ struct FragmentState {
 
 // A ps_1_1 to ps_1_4 program made ready to run. Registers keep to their ranges: c# in [-1, 1], v# in [0, 1],
 // results of arithmetic in [-1, 1] up to ps_1_3 and [-8, 8] in ps_1_4 (Direct3D 8.1 reference, "Registers -
-// ps_1_X").
+// ps_1_X"). NaN counts as 0 there, so r0 never holds one.
 class PixelProgram {
  public:
   explicit PixelProgram(const isa::Program& program, CombinerFormat format = CombinerFormat::float32);

@@ -1,12 +1,25 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "model/pixel/pixel_program.h"
 
 // The registers of a batch of fragments while a program runs. Internal to model/pixel.
 namespace splatscope::pixel {
+
+// Into the range of a register, which has 0 in it. NaN counts as 0: the registers of the hardware are
+// fixed-point and hold none. Loops of it vectorise.
+inline float in_range(float value, float low, float high) {
+  const float number = std::isnan(value) ? 0.0f : value;
+  return std::min(std::max(number, low), high);
+}
+
+inline void clamp_lanes(const float* from, float low, float high, float* to, int count) {
+  for (int i = 0; i < count; ++i) to[i] = in_range(from[i], low, high);
+}
 
 struct alignas(64) Register {
   Lanes component[4];

@@ -15,10 +15,6 @@ void sample(int stage, const Register& coordinates, Registers& registers, const 
   context.sampler(stage, coordinates.component, registers.textures[stage].component, context.count);
 }
 
-void clamp_lanes(const float* from, float low, float high, float* to, int count) {
-  for (int i = 0; i < count; ++i) to[i] = std::min(std::max(from[i], low), high);
-}
-
 void kill_negative(const Lanes* components, const Context& context) {
   for (int i = 0; i < context.count; ++i)
     if (components[0][i] < 0 || components[1][i] < 0 || components[2][i] < 0)
@@ -188,7 +184,9 @@ void run_1_4(const isa::Instruction& instruction, Registers& registers, const Co
       return write_depth(result[0], result[1], context);
     case texld: {
       const Register coordinates = coordinates_1_4(instruction.sources[0], registers, context.count);
-      return context.sampler(destination.index, coordinates.component, result, context.count);
+      context.sampler(destination.index, coordinates.component, result, context.count);
+      for (Lanes& component : result) clamp_lanes(component, -8, 8, component, context.count);
+      return;
     }
     case texcrd: {
       const Register coordinates = coordinates_1_4(instruction.sources[0], registers, context.count);
