@@ -121,12 +121,10 @@ void add_shader_command(CLI::App& app) {
   debug_part->callback([options] { debug(*options); });
 
   run->footer(
-      "One result a line: {\"id\", \"outputs\"}, or {\"id\", \"error\": \"LINE: what\"} with the program's "
-      "line, or 0\n"
-      "where the case itself is wrong. A wrong case does not end the batch; after a line that is no JSON "
-      "object\n"
-      "the exit status is 2 at the end.\n"
-      "Example: splatscope shader run --batch cases.jsonl --arithmetic nv20");
+      R"(Each case gives a line: {"id", "outputs"}, or {"id", "error": "LINE: what"} with the
+program's line, or 0 where the case itself is wrong; the batch goes on. After a line
+that is no JSON object the exit status is 2 at the end.
+Example: splatscope shader run --batch cases.jsonl --arithmetic nv20)");
   run->callback([options] { run_batch(*options); });
 }
 

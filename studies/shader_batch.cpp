@@ -7,7 +7,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <streambuf>
 #include <utility>
 
 #include "model/error.h"
@@ -93,13 +92,11 @@ std::string place_and_rule(const UserError& error) {
 // dropped. False at the end of the text.
 bool read_line(std::istream& in, std::string& text) {
   text.clear();
-  std::streambuf& bytes = *in.rdbuf();
-  constexpr int kEnd = std::char_traits<char>::eof();
-  int byte = bytes.sbumpc();
-  if (byte == kEnd) return false;
-  for (; byte != kEnd && byte != '\n'; byte = bytes.sbumpc())
-    if (text.size() <= kLongestLine) text.push_back(static_cast<char>(byte));
-  return true;
+  for (char byte; in.get(byte);) {
+    if (byte == '\n') return true;
+    if (text.size() <= kLongestLine) text.push_back(byte);
+  }
+  return !text.empty();
 }
 
 ordered_json outputs_of(const ShaderCase& test, Arithmetic arithmetic) {
@@ -137,6 +134,7 @@ void run_shader_batch(std::istream& cases, std::string_view file, Arithmetic ari
     results << result.json << '\n';
     if (!result.is_object && wrong++ == 0) first_wrong = line;
   }
+  if (cases.bad()) throw UserError(file, line + 1, "cannot be read, expected a JSON object a line");
   if (wrong == 0) return;
   throw UserError(file, first_wrong,
                   fmt::format("this is no case, expected a JSON object (lines like it: {})", wrong));

@@ -20,7 +20,7 @@ struct ShaderResult {
 ShaderResult run_shader_case(std::string_view text, Arithmetic arithmetic);
 
 // A line in, a line out; empty lines are skipped. Throws UserError at `file` and the first line that was no
-// JSON object, after the last line.
+// JSON object, after the last line; at the line that cannot be read.
 void run_shader_batch(std::istream& cases, std::string_view file, Arithmetic arithmetic,
                       std::ostream& results);
 

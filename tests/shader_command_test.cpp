@@ -71,6 +71,7 @@ TEST(ShaderCommand, FilesThatAreNoShaderAreExit2) {
             "cut.vso: 7 bytes are not whole tokens, expected a multiple of 4\n");
   EXPECT_EQ(run_program({"shader", "check", "none.vs"}, folder.path()).status, 2);
   EXPECT_EQ(run_program({"shader", "run", "--batch", "none.jsonl"}, folder.path()).status, 2);
+  EXPECT_EQ(run_program({"shader", "run", "--batch", "."}, folder.path()).status, 2);
 }
 
 TEST(ShaderCommand, RunsABatchInEitherArithmetic) {
