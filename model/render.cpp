@@ -38,19 +38,20 @@ std::vector<int> attributes_of(const isa::Program& program) {
 // The programs of a trace, each assembled when a draw first uses it.
 class Programs {
  public:
-  Programs(const Trace& trace, Arithmetic arithmetic) : trace_(trace), arithmetic_(arithmetic) {}
+  Programs(const Trace& trace, const NumberFormats& formats) : trace_(trace), formats_(formats) {}
 
   const vertex::VertexProgram& vertex(std::uint32_t index) {
     const auto found = vertex_.find(index);
     if (found != vertex_.end()) return found->second;
-    return vertex_.emplace(index, vertex::VertexProgram(load(index), arithmetic_)).first->second;
+    return vertex_.emplace(index, vertex::VertexProgram(load(index), formats_.vertex_arithmetic))
+        .first->second;
   }
 
   const LoadedPixelProgram& pixel(std::uint32_t index) {
     const auto found = pixel_.find(index);
     if (found != pixel_.end()) return found->second;
     const isa::Program program = load(index);
-    LoadedPixelProgram loaded{pixel::PixelProgram(program), attributes_of(program)};
+    LoadedPixelProgram loaded{pixel::PixelProgram(program, formats_.combiner), attributes_of(program)};
     if (!loaded.program.samples_ahead()) {
       throw UserError(
           program.name, 0,
@@ -65,7 +66,7 @@ class Programs {
     return isa::load(trace_.programs[index].text, trace_.programs[index].name);
   }
   const Trace& trace_;
-  Arithmetic arithmetic_;
+  const NumberFormats& formats_;
   std::map<std::uint32_t, vertex::VertexProgram> vertex_;
   std::map<std::uint32_t, LoadedPixelProgram> pixel_;
 };
@@ -76,7 +77,7 @@ Rendered render(const Trace& trace, const RenderOptions& options,
                 const std::function<void(double)>& progress) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
   output::clear(Clear{}, rendered.frame);
-  Programs programs(trace, options.formats.vertex_arithmetic);
+  Programs programs(trace, options.formats);
   for (std::size_t i = 0; i < trace.commands.size(); ++i) {
     if (progress) progress(static_cast<double>(i) / static_cast<double>(trace.commands.size()));
     const Command& command = trace.commands[i];

@@ -34,6 +34,7 @@ ChoiceField choice(std::span<const std::string_view> names) {
 
 constexpr std::array<std::string_view, 2> kArithmetics{"ieee", "nv20"};
 constexpr std::array<std::string_view, 2> kColorFormats{"unorm8", "float32"};
+constexpr std::array<std::string_view, 2> kCombinerFormats{"float32", "signed9"};
 constexpr std::array<std::string_view, 3> kDepthFormats{"z16", "z24", "float32"};
 
 using M = Machine;
@@ -44,6 +45,8 @@ std::vector<Parameter> number_parameters() {
        "arithmetic of the vertex units"},
       {"numbers.color", "", choice<&NumberFormats::color>(kColorFormats),
        "interpolated colours as the pixel unit sees them, and its output"},
+      {"numbers.combiner", "", choice<&NumberFormats::combiner>(kCombinerFormats),
+       "results in the pixel unit: binary32, or the 9-bit signed steps of register combiners"},
       {"numbers.frame", "", choice<&NumberFormats::frame>(kColorFormats), "frame buffer, a channel"},
       {"numbers.depth", "", choice<&NumberFormats::depth>(kDepthFormats), "depth buffer"},
       {"numbers.subpixel_bits", "bits", integer<&M::numbers, &NumberFormats::subpixel_bits>(0, 8),

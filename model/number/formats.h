@@ -23,6 +23,7 @@ enum class DepthFormat : std::uint8_t { z16, z24, float32 };
 struct NumberFormats {
   Arithmetic vertex_arithmetic = Arithmetic::ieee;
   ColorFormat color = ColorFormat::unorm8;
+  CombinerFormat combiner = CombinerFormat::float32;
   FrameFormat frame = FrameFormat::unorm8;
   DepthFormat depth = DepthFormat::z24;
   int subpixel_bits = 4;  // of window x and y, 0 to 8: coverage is decided on this grid
