@@ -76,7 +76,7 @@ TEST(Frames, EightBitPicturesComeNearTheReference) {
   }
 }
 
-class ReducedFrame : public testing::TestWithParam<std::tuple<const char*, traces::Algorithm>> {};
+class ReducedFrame : public testing::TestWithParam<std::tuple<std::string, traces::Algorithm>> {};
 
 TEST_P(ReducedFrame, SchedulersAgreeAndBooksAddUp) {
   const auto& [name, algorithm] = GetParam();
@@ -101,11 +101,11 @@ TEST_P(ReducedFrame, SchedulersAgreeAndBooksAddUp) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Table1, ReducedFrame,
-                         testing::Combine(testing::Values("geforce4-ti4400", "radeon-8500"),
-                                          testing::Values(traces::Algorithm::no_ewa,
-                                                          traces::Algorithm::ewa_per_pixel,
-                                                          traces::Algorithm::ewa_per_surfel)));
+INSTANTIATE_TEST_SUITE_P(
+    Table1, ReducedFrame,
+    testing::Combine(testing::Values(std::string("geforce4-ti4400"), std::string("radeon-8500")),
+                     testing::Values(traces::Algorithm::no_ewa, traces::Algorithm::ewa_per_pixel,
+                                     traces::Algorithm::ewa_per_surfel)));
 
 // What the frame needs of a machine does not change its picture, nor does the machine's timing.
 TEST(Frames, TimingDoesNotTouchThePicture) {
