@@ -6,6 +6,7 @@
 #include "model/error.h"
 #include "model/isa/program.h"
 #include "model/pixel/pixel_program.h"
+#include "model/vertex/vertex_fetch.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::traces {
@@ -140,9 +141,9 @@ class Checker {
       seen |= 1u << attribute.input;
       in_range("attribute's format", static_cast<unsigned>(attribute.format), 0,
                static_cast<unsigned>(VertexFormat::short4));
-      if (attribute.offset + size_in_bytes(attribute.format) > draw.vertex_stride)
+      if (attribute.offset + vertex::size_of(attribute.format) > draw.vertex_stride)
         fail(fmt::format("attribute of v{} ends at byte {}", attribute.input,
-                         attribute.offset + size_in_bytes(attribute.format)),
+                         attribute.offset + vertex::size_of(attribute.format)),
              fmt::format("an end within the stride of {} bytes", draw.vertex_stride));
     }
   }
@@ -174,24 +175,6 @@ class Checker {
 };
 
 }  // namespace
-
-std::uint32_t size_in_bytes(VertexFormat format) {
-  switch (format) {
-    case VertexFormat::float1:
-    case VertexFormat::d3dcolor:
-    case VertexFormat::ubyte4:
-    case VertexFormat::short2:
-      return 4;
-    case VertexFormat::float2:
-    case VertexFormat::short4:
-      return 8;
-    case VertexFormat::float3:
-      return 12;
-    case VertexFormat::float4:
-      return 16;
-  }
-  throw ModelError("size_in_bytes: no such vertex format");
-}
 
 void check_trace(const Trace& trace, std::string_view file) {
   Checker(trace, file).check();

@@ -24,7 +24,4 @@ Trace read_trace(const std::filesystem::path& path);
 // Throws UserError "file: what, expected what".
 void check_trace(const Trace& trace, std::string_view file);
 
-// Bytes of one attribute in a vertex.
-std::uint32_t size_in_bytes(VertexFormat format);
-
 }  // namespace splatscope::traces
