@@ -61,7 +61,7 @@ class VertexStage {
       for (int c = 0; c < 4; ++c) {
         const float value = output_.o[output][c][lane];
         const bool color = attribute <= primitive::kSpecular;  // saturated on the way out of the vertex unit
-        vertex.attributes[attribute][c] = !color ? value : value > 0 ? std::min(value, 1.0f) : 0.0f;
+        vertex.attributes[attribute][c] = color ? output::saturate(value) : value;
       }
     }
   }

@@ -9,9 +9,8 @@ namespace {
 
 // A colour component as the pixel unit receives it.
 float received(float value, ColorFormat format) {
-  const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN: 0
-  return format == ColorFormat::unorm8 ? static_cast<float>(output::quantize_unorm8(clamped)) / 255.0f
-                                       : clamped;
+  return format == ColorFormat::unorm8 ? static_cast<float>(output::quantize_unorm8(value)) / 255.0f
+                                       : output::saturate(value);
 }
 
 }  // namespace

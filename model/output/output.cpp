@@ -6,10 +6,6 @@
 namespace splatscope::output {
 namespace {
 
-float saturate(float value) {
-  return value > 0 ? std::min(value, 1.0f) : 0.0f;
-}  // NaN: 0
-
 // The factor of one channel in a float frame buffer.
 float factor_of(BlendFactor factor, const Vec4& source, const Vec4& destination, std::size_t channel) {
   switch (factor) {

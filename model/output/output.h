@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "model/output/frame.h"
@@ -9,6 +10,11 @@ namespace splatscope::output {
 
 // Window z as the depth buffer stores it. z is clamped to [0, 1]; NaN counts as 0.
 std::uint32_t quantize_depth(float z, DepthFormat format);
+
+// A colour component clamped to [0, 1]; NaN counts as 0.
+inline float saturate(float value) {
+  return value > 0 ? std::min(value, 1.0f) : 0.0f;
+}
 
 // A float colour component as 8 bits: clamped to [0, 1], round to nearest; NaN counts as 0.
 std::uint8_t quantize_unorm8(float value);

@@ -1,6 +1,5 @@
 #include "sim/units/texture/texture_unit.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace splatscope::sim {
@@ -12,13 +11,13 @@ constexpr unsigned kBlockBytes = 16;
 
 TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec,
                          int quads_per_clock)
-    : DrawUnit(std::move(name), completion),
+    : CachedUnit(std::move(name), completion,
+                 {spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes),
+                  static_cast<std::uint32_t>(spec.fill_bytes), spec.pending},
+                 quads_per_clock),
       spec_(spec),
-      quads_per_clock_(quads_per_clock),
-      line_shift_(
-          static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))),
-      cache_({spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes),
-              static_cast<std::uint32_t>(spec.fill_bytes), spec.pending}) {}
+      line_shift_(static_cast<std::uint32_t>(
+          std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))) {}
 
 void TextureUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out, MemoryPort& port) {
   in_ = &in;
@@ -69,27 +68,13 @@ Step TextureUnit::advance(Cycle now) {
   for (int i = 0; i < quads_per_clock_ && leave(now); ++i) moved = true;
   int lookups = spec_.lookups_per_clock;
   for (int i = 0; i < quads_per_clock_ && look_up(now, lookups); ++i) moved = true;
-  if (moved || lookups != spec_.lookups_per_clock) return busy(now + 1);
-
-  Cycle next = kNever;
-  if (in_the_way_) {
-    next = cache_.next_try();
-  } else if (cache_.has_room()) {
-    next = in_->next_visible();
-  }
-  if (cache_.empty()) return in_the_way_ ? blocked(*in_the_way_, next) : nothing_to_take(next);
-  if (cache_.is_ready(now)) return blocked(out_->consumer(), std::min(next, out_->next_free()));
-  return blocked(cache_.server(), std::min(next, cache_.next_ready()));
+  return moved || lookups != spec_.lookups_per_clock ? busy(now + 1) : waiting(now, out_);
 }
 
 std::vector<Statistic> TextureUnit::statistics() const {
   return {{"quads", "quads", "passed on", quads_},
           {"lookups", "lines", "looked up in the texture cache", cache_.touches()},
           {"misses", "lines", "read from memory", cache_.misses()}};
-}
-
-std::string TextureUnit::state() const {
-  return cache_.empty() ? "" : "oldest quad " + std::to_string(cache_.oldest());
 }
 
 }  // namespace splatscope::sim
