@@ -107,7 +107,8 @@ struct Outcome {
 };
 
 Outcome run(const Case& test, Scheduler scheduler) {
-  constexpr Cycle kEnd = 200'000;
+  // Past the longest random case: 240 vertices of 81 slots that each wait 64 clocks, with gaps and pauses.
+  constexpr Cycle kEnd = 2'000'000;
   ClockDomain domain("test", 1000, 1000, scheduler);
   Completion completion;
   VertexUnit unit("vertex", completion, test.spec, test.programs);
@@ -178,7 +179,7 @@ TEST(VertexUnit, is_busy_while_it_reloads) {
 
 TEST(VertexUnit, holds_two_vertices_a_thread) {
   Case test = transform_case(3, 3, 20);
-  test.pauses = {1'000'000};
+  test.pauses = {10'000'000};
   EXPECT_EQ(run(test, Scheduler::skip_ahead).taken, 1u + 4u + 6u);  // one to the sink, four in the channel
 }
 
