@@ -2,7 +2,7 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
-#include "studies/reproduction.h"
+#include "studies/reproduction/reproduction.h"
 
 namespace splatscope::app {
 
@@ -14,12 +14,17 @@ void add_reproduce_command(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand(
       "reproduce", "the published results on the simulated machines, beside the published figures");
   const auto options = std::make_shared<Options>();
-  command->add_option("ID", options->names, "table1; all of them where none is given");
+  command->add_option("ID", options->names,
+                      studies::names_of(studies::reproductions()) + "; all of them where none is given");
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command->footer("Example: splatscope reproduce table1 --out out");
   command->callback([options, &invocation] {
+    const auto chosen = studies::choose(studies::reproductions(), "reproduce", options->names);
+    studies::Findings findings(
+        options->out, "splatscope: Object Space EWA Surface Splatting, 2002",
+        "The published results of Ren, Pfister and Zwicker on the simulated machines of 2002.");
     ProgressBar progress("simulating", invocation.quiet);
-    studies::reproduce(options->names, options->out, progress.callback());
+    studies::run_studies(chosen, findings, progress.callback());
   });
 }
 

@@ -21,12 +21,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Part of a longer progress.
-Progress part(const Progress& progress, double from, double to) {
-  if (!progress) return {};
-  return [=](double fraction) { progress(from + fraction * (to - from)); };
-}
-
 Json frame_json(const sim::Result& timing) {
   return {{"cycles", timing.cycles},
           {"milliseconds", 1000 * timing.seconds},

@@ -11,6 +11,7 @@
 #include "model/render.h"
 #include "sim/simulate.h"
 #include "studies/image_io.h"
+#include "studies/study.h"
 #include "traces/recorder.h"
 
 // One frame of a scene or a trace on one machine.
@@ -21,8 +22,6 @@ enum class Fidelity { functional, cycle, referee };
 // "functional", "cycle", "referee". Throws UserError (file "--fidelity") for another name.
 Fidelity fidelity_by_name(std::string_view name);
 std::string_view name(Fidelity fidelity);
-
-using Progress = std::function<void(double)>;  // told the fraction done, from 0 to 1
 
 // What is run: a trace, and what the host knows about it where it was recorded from a scene.
 struct Input {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "studies/run.h"
+#include "studies/study.h"
 
 // Table 1 of Ren, Pfister, Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines.
 namespace splatscope::studies {
@@ -26,20 +26,9 @@ struct Table1Row {
   double error() const { return simulated_fps / published_fps - 1; }
 };
 
-struct Table1Picture {
-  std::string algorithm;
-  Image image;
-};
+// Runs the six frames at cycle fidelity: algorithm by algorithm, the Radeon first, as printed.
+std::vector<Table1Row> table1_rows(const Progress& progress = {});
 
-struct Table1 {
-  std::vector<Table1Row> rows;          // algorithm by algorithm, the Radeon first, as printed
-  std::vector<Table1Picture> pictures;  // Fig. 11 a, b, c, on the GeForce4
-};
-
-// Runs the six frames on `machines` (the two of the paper) at cycle fidelity.
-Table1 reproduce_table1(const Progress& progress = {});
-
-// As the terminal shows it.
-std::string text_of(const Table1& table);
+void reproduce_table1(Findings& findings, const Progress& progress);
 
 }  // namespace splatscope::studies

@@ -1,0 +1,17 @@
+#include "studies/reproduction/reproduction.h"
+
+#include <array>
+
+#include "studies/reproduction/table1.h"
+
+namespace splatscope::studies {
+
+std::span<const Study> reproductions() {
+  static constexpr std::array kReproductions = {
+      Study{"table1", "frame rates of the three algorithms on both machines", reproduce_table1},
+      Study{"fig11", "a checkerboard by the three algorithms", reproduce_figure11},
+  };
+  return kReproductions;
+}
+
+}  // namespace splatscope::studies

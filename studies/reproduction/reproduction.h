@@ -1,0 +1,14 @@
+#pragma once
+
+#include "studies/study.h"
+
+namespace splatscope::studies {
+
+// The published results that can be reproduced on the simulated machines, by the names that the papers give
+// them.
+std::span<const Study> reproductions();
+
+// One file each beside this one.
+void reproduce_figure11(Findings& findings, const Progress& progress);
+
+}  // namespace splatscope::studies

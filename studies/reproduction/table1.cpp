@@ -1,0 +1,171 @@
+#include "studies/reproduction/table1.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/isa/program.h"
+#include "studies/reference_comparison.h"
+#include "studies/run.h"
+#include "traces/weight_capture.h"
+
+namespace splatscope::studies {
+namespace {
+
+// Ren 2002, Table 1: frames per second at 512 x 512.
+struct Published {
+  std::string_view algorithm;
+  std::string_view machine;
+  double fps;
+};
+constexpr Published kPublished[] = {
+    {"no-ewa", "radeon-8500", 57.3},         {"no-ewa", "geforce4-ti4400", 59.6},
+    {"ewa-per-pixel", "radeon-8500", 1.3},   {"ewa-per-pixel", "geforce4-ti4400", 1.0},
+    {"ewa-per-surfel", "radeon-8500", 16.9}, {"ewa-per-surfel", "geforce4-ti4400", 23.8},
+};
+
+// The parameter fitted to a row, or nothing: machine files name the rows, as in "table1 ewa-per-pixel".
+std::string fitted_parameter(const Machine& machine, std::string_view algorithm) {
+  for (const auto& [parameter, origin] : machine.origins) {
+    if (origin.fitted_to == fmt::format("table1 {}", algorithm)) return parameter;
+  }
+  return {};
+}
+
+void find_bottleneck(const sim::Result& timing, Table1Row& row) {
+  const auto busiest = std::ranges::max_element(timing.units, {}, &sim::UnitBooks::busy);
+  row.bottleneck = busiest->name;
+  row.bottleneck_share = static_cast<double>(busiest->busy) / static_cast<double>(timing.cycles);
+}
+
+int slots_of(const Trace& trace, std::size_t program) {
+  return isa::slot_count(isa::load(trace.programs[program].text, trace.programs[program].name));
+}
+
+// The two vertex programs of a recorded trace, in the order of its passes.
+void count_slots(const Trace& trace, Table1Row& row) {
+  std::vector<std::uint32_t> programs;
+  for (const Command& command : trace.commands) {
+    if (const auto* draw = std::get_if<Draw>(&command)) programs.push_back(draw->vertex_program);
+  }
+  row.visibility_slots = slots_of(trace, programs.front());
+  row.splat_slots = slots_of(trace, programs.back());
+}
+
+nlohmann::ordered_json json_of(const std::vector<Table1Row>& table) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const Table1Row& row : table) {
+    rows.push_back({{"algorithm", row.algorithm},
+                    {"machine", row.machine},
+                    {"vs1", row.visibility_slots},
+                    {"vs2", row.splat_slots},
+                    {"fps_published", row.published_fps},
+                    {"fps_simulated", row.simulated_fps},
+                    {"error", row.error()},
+                    {"role", row.fitted ? "fitted" : "predicted"},
+                    {"fitted_parameter", row.fitted_by},
+                    {"bottleneck", row.bottleneck},
+                    {"bottleneck_busy_share", row.bottleneck_share},
+                    {"psnr_decibels", row.psnr},
+                    {"cycles_per_host_second", row.cycles_per_host_second}});
+  }
+  return rows;
+}
+
+void add_to(Report& report, const std::vector<Table1Row>& table) {
+  using enum Report::Align;
+  report.heading("Table 1: frame rates at 512 x 512");
+  std::vector<std::vector<std::string>> rows;
+  for (const Table1Row& row : table) {
+    rows.push_back({row.algorithm, row.machine, fmt::format("{}", row.visibility_slots),
+                    fmt::format("{}", row.splat_slots), fmt::format("{:.1f}", row.published_fps),
+                    fmt::format("{:.2f}", row.simulated_fps), fmt::format("{:+.1f} %", 100 * row.error()),
+                    row.fitted ? "fitted: " + row.fitted_by : "predicted",
+                    fmt::format("{} ({:.0f} % busy)", row.bottleneck, 100 * row.bottleneck_share),
+                    fmt::format("{:.1f}", row.psnr)});
+  }
+  report.table(
+      "64k-surfel checkerboard plane. VS1, VS2: instruction slots of the two passes, counted from the "
+      "programs "
+      "that ran. A row is fitted where a parameter of the machine was fitted to that very figure, else "
+      "predicted.",
+      {{"algorithm"},
+       {"machine"},
+       {"VS1", number},
+       {"VS2", number},
+       {"published fps", number},
+       {"simulated fps", number},
+       {"error", number},
+       {"role"},
+       {"bottleneck"},
+       {"PSNR, dB", number}},
+      rows);
+  report.paragraph(
+      "PSNR is against the double-precision sums of Eq. 8, normalised per pixel, over the pixels that the "
+      "plane covers. The paper gives neither the camera nor the size of the squares: both are a "
+      "reconstruction, as are the programs, of which it prints no listing.");
+}
+
+std::string text_of(const std::vector<Table1Row>& table) {
+  std::string out =
+      fmt::format("{:<15} {:<16} {:>4} {:>4} {:>10} {:>10} {:>7}  {:<9} {:<18} {:>8}\n", "algorithm",
+                  "machine", "VS1", "VS2", "published", "simulated", "error", "role", "bottleneck", "PSNR");
+  for (const Table1Row& row : table) {
+    out += fmt::format(
+        "{:<15} {:<16} {:>4} {:>4} {:>6.1f} fps {:>6.2f} fps {:>+6.1f}%  {:<9} {:<12} {:>3.0f} % {:>6.1f} "
+        "dB\n",
+        row.algorithm, row.machine, row.visibility_slots, row.splat_slots, row.published_fps,
+        row.simulated_fps, 100 * row.error(), row.fitted ? "fitted" : "predicted", row.bottleneck,
+        100 * row.bottleneck_share, row.psnr);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Table1Row> table1_rows(const Progress& progress) {
+  std::vector<Table1Row> rows;
+  const kernels::ReferencePicture reference =
+      scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
+  std::map<std::string, traces::CapturedWeights, std::less<>>
+      weights;  // by machine: two algorithms share them
+  double done = 0;
+  for (const Published& published : kPublished) {
+    const auto step = [&](double fraction) {
+      if (progress) progress((done + fraction) / std::size(kPublished));
+    };
+    const Machine machine = machine::load(published.machine);
+    const traces::Scene scene = traces::load_scene(fmt::format("checkerboard-{}", published.algorithm));
+    const bool per_pixel = scene.splatting.algorithm == traces::Algorithm::ewa_per_pixel;
+    if (!per_pixel && !weights.contains(published.machine)) {
+      weights.emplace(published.machine, traces::capture_weights(scene, machine.numbers));
+    }
+    const Trace trace = per_pixel ? traces::record(scene, machine.numbers).trace
+                                  : traces::record(scene, weights.find(published.machine)->second).trace;
+    const FrameRun run = run_frame(trace, machine, Fidelity::cycle, step);
+
+    Table1Row row;
+    row.algorithm = published.algorithm;
+    row.machine = published.machine;
+    row.published_fps = published.fps;
+    row.simulated_fps = run.timing->frames_per_second();
+    row.fitted_by = fitted_parameter(machine, published.algorithm);
+    row.fitted = !row.fitted_by.empty();
+    row.cycles_per_host_second = static_cast<double>(run.timing->cycles) / run.timing_seconds;
+    row.psnr = psnr(run.rendered.frame, reference);
+    count_slots(trace, row);
+    find_bottleneck(*run.timing, row);
+    rows.push_back(row);
+    ++done;
+  }
+  return rows;
+}
+
+void reproduce_table1(Findings& findings, const Progress& progress) {
+  const std::vector<Table1Row> rows = table1_rows(progress);
+  findings.say(text_of(rows));
+  findings.result("table1", json_of(rows));
+  add_to(findings.report(), rows);
+}
+
+}  // namespace splatscope::studies

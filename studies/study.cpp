@@ -1,0 +1,80 @@
+#include "studies/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "model/error.h"
+#include "traces/output_files.h"
+
+namespace splatscope::studies {
+
+Progress part(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [=](double fraction) { progress(from + fraction * (to - from)); };
+}
+
+Findings::Findings(std::filesystem::path folder, std::string_view title, std::string_view lead)
+    : folder_(std::move(folder)), report_(title, lead), results_(nlohmann::ordered_json::object()) {
+  traces::prepare_output_folder(folder_);
+}
+
+void Findings::result(std::string_view key, nlohmann::ordered_json value) {
+  results_[std::string(key)] = std::move(value);
+}
+
+void Findings::say(std::string_view text) {
+  fmt::print("{}", text);
+}
+
+void Findings::pictures(const std::vector<Picture>& pictures) {
+  std::vector<Report::Picture> shown;
+  for (const Picture& picture : pictures) {
+    write_exr(picture.image, folder_ / (picture.name + ".exr"));
+    write_png(picture.image, folder_ / (picture.name + ".png"));
+    shown.push_back({picture.name, picture.caption, picture.image});
+  }
+  report_.pictures(shown);
+}
+
+void Findings::write(double host_seconds) {
+  results_["host"] = {{"seconds", host_seconds}};
+  report_.write(folder_ / "report.html");
+  traces::write_file(folder_ / "results.json", results_.dump(1) + "\n");
+  say(fmt::format("{:.1f} s; results.json, report.html and pictures in {}\n", host_seconds,
+                  folder_.string()));
+}
+
+std::string names_of(std::span<const Study> studies) {
+  std::string names;
+  for (const Study& study : studies) names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
+  return names;
+}
+
+std::vector<Study> choose(std::span<const Study> studies, std::string_view command,
+                          const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (std::ranges::find(studies, name, &Study::name) == studies.end()) {
+      throw UserError(command, 0, fmt::format("unknown name \"{}\", expected {}", name, names_of(studies)));
+    }
+  }
+  std::vector<Study> chosen;
+  std::ranges::copy_if(studies, std::back_inserter(chosen), [&](const Study& study) {
+    return names.empty() || std::ranges::find(names, study.name) != names.end();
+  });
+  return chosen;
+}
+
+void run_studies(std::span<const Study> studies, Findings& findings, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto count = static_cast<double>(studies.size());
+  double done = 0;
+  for (const Study& study : studies) {
+    study.run(findings, part(progress, done / count, (done + 1) / count));
+    ++done;
+  }
+  findings.write(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace splatscope::studies

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/report.h"
+
+// What `reproduce` and `study` have in common: a list of studies, and one place for what they find.
+namespace splatscope::studies {
+
+using Progress = std::function<void(double)>;  // told the fraction done, from 0 to 1
+
+// Part of a longer progress, from one fraction to another.
+Progress part(const Progress& progress, double from, double to);
+
+// What studies find: text for the terminal, figures for scripts (results.json), tables and pictures for
+// people (report.html, PNG and EXR files), all in one folder.
+class Findings {
+ public:
+  // Throws UserError where the folder cannot be made or written.
+  Findings(std::filesystem::path folder, std::string_view title, std::string_view lead);
+
+  Report& report() { return report_; }
+  // Stands in results.json under `key`.
+  void result(std::string_view key, nlohmann::ordered_json value);
+  // Goes to standard output.
+  void say(std::string_view text);
+
+  struct Picture {
+    std::string name;  // of its files, without ending
+    std::string caption;
+    Image image;
+  };
+  // Written as name.png and name.exr, and put into the report side by side.
+  void pictures(const std::vector<Picture>& pictures);
+
+  // Writes report.html and results.json, which also holds the host's seconds.
+  void write(double host_seconds);
+
+ private:
+  std::filesystem::path folder_;
+  Report report_;
+  nlohmann::ordered_json results_;
+};
+
+struct Study {
+  std::string_view name;  // "table1"
+  std::string_view what;  // a line for people
+  void (*run)(Findings&, const Progress&);
+};
+
+// "table1, fig11".
+std::string names_of(std::span<const Study> studies);
+
+// The studies of the given names (none: all) in the order of the list. `command` is named in errors. Throws
+// UserError for an unknown name.
+std::vector<Study> choose(std::span<const Study> studies, std::string_view command,
+                          const std::vector<std::string>& names);
+
+// Runs the studies one after the other and writes what they found.
+void run_studies(std::span<const Study> studies, Findings& findings, const Progress& progress);
+
+}  // namespace splatscope::studies
