@@ -34,6 +34,7 @@ tbody tr:hover { background: var(--band); }
 figure { margin: 0; max-width: 100%; }
 img { display: block; width: 100%; height: auto; }
 figcaption { margin-top: .5rem; font-size: .9rem; color: var(--dim); }
+.drawing { max-width: 45rem; margin: 1.25rem 0; }
 figcaption b { color: var(--ink); }
 )css";
 
@@ -119,6 +120,14 @@ void Report::pictures(const std::vector<Picture>& pictures) {
         "src=\"data:image/png;base64,{3}\"><figcaption><b>{2}</b> {4}</figcaption></figure>\n",
         p.image.width, p.image.height, escaped(p.title), base64(encode_png(p.image)), escaped(p.caption));
   body_ += "</div>\n";
+}
+
+void Report::drawing(std::string_view caption, std::string_view svg) {
+  // As a picture of its own: its identifiers and styles then stay apart from the page's.
+  body_ += fmt::format(
+      "<figure class=\"drawing\"><img alt=\"{0}\" src=\"data:image/svg+xml;base64,{1}\">"
+      "<figcaption>{0}</figcaption></figure>\n",
+      escaped(caption), base64(std::as_bytes(std::span(svg.data(), svg.size()))));
 }
 
 std::string Report::html() const {

@@ -37,6 +37,9 @@ class Report {
   // aliasing. Only on a screen narrower than the picture it is scaled.
   void pictures(const std::vector<Picture>& pictures);
 
+  // A picture in SVG, drawn to scale.
+  void drawing(std::string_view caption, std::string_view svg);
+
   std::string html() const;
   // The file appears whole or not at all. Throws UserError where the place cannot be written.
   void write(const std::filesystem::path& path) const;

@@ -36,6 +36,15 @@ TEST(Report, LoadsNothing) {
     EXPECT_FALSE(holds(html, loader));
 }
 
+TEST(Report, HoldsDrawingsAsPicturesOfTheirOwn) {
+  Report report("t", "l");
+  report.drawing("a <curve>", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+  const std::string html = report.html();
+  EXPECT_TRUE(holds(html, "src=\"data:image/svg+xml;base64,PHN2ZyB4bWxucz0i"));
+  EXPECT_TRUE(holds(html, "<figcaption>a &lt;curve&gt;</figcaption>"));
+  EXPECT_FALSE(holds(html, "<svg"));
+}
+
 TEST(Report, RowsHaveACellForEachColumn) {
   Report report("t", "l");
   EXPECT_THROW(report.table("", {{"a"}, {"b"}}, {{"1"}}), ModelError);

@@ -38,6 +38,12 @@ void Findings::pictures(const std::vector<Picture>& pictures) {
   report_.pictures(shown);
 }
 
+void Findings::plot(const std::string& name, const Plot& plot) {
+  const std::string svg = svg_of(plot);
+  traces::write_file(folder_ / (name + ".svg"), svg);
+  report_.drawing(plot.title, svg);
+}
+
 void Findings::write(double host_seconds) {
   results_["host"] = {{"seconds", host_seconds}};
   report_.write(folder_ / "report.html");

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/image_io.h"
+#include "studies/plot.h"
 #include "studies/report.h"
 
 // What `reproduce` and `study` have in common: a list of studies, and one place for what they find.
@@ -38,6 +40,8 @@ class Findings {
   };
   // Written as name.png and name.exr, and put into the report side by side.
   void pictures(const std::vector<Picture>& pictures);
+  // Written as name.svg, and put into the report.
+  void plot(const std::string& name, const Plot& plot);
 
   // Writes report.html and results.json, which also holds the host's seconds.
   void write(double host_seconds);

@@ -1,0 +1,68 @@
+#include "studies/plot.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "traces/output_files.h"
+
+namespace splatscope::studies {
+namespace {
+
+// In gnuplot's single quotes, where a quote is written twice and nothing else means anything.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += '\'';
+    result += c == '\n' ? ' ' : c;
+  }
+  return result + "'";
+}
+
+std::string script_of(const Plot& plot) {
+  std::string script =
+      "set terminal svg size 720,440 font 'sans-serif,13' noenhanced background rgb 'white'\n"
+      "set key outside right\nset grid lc rgb '#d9dde1'\nset offsets graph 0.02, graph 0.02, graph 0.05, "
+      "graph 0.05\n";
+  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title),
+                        quoted(plot.x_label), quoted(plot.y_label));
+  if (plot.log_x) script += "set logscale x\n";
+  if (plot.log_y) script += "set logscale y\n";
+  std::string curves;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const Plot::Series& series = plot.series[i];
+    script += fmt::format("$s{} << EOD\n", i);
+    for (std::size_t k = 0; k < series.x.size(); ++k) {
+      if (std::isfinite(series.x[k]) && std::isfinite(series.y[k])) {
+        script += fmt::format("{:.9g} {:.9g}\n", series.x[k], series.y[k]);
+      }
+    }
+    script += "EOD\n";
+    curves +=
+        fmt::format("{}$s{} with {} title {}", i == 0 ? "plot " : ", ", i,
+                    series.joined ? "linespoints pt 7 ps 0.5" : "points pt 7 ps 0.5", quoted(series.name));
+  }
+  return script + (curves.empty() ? "plot" : curves) + "\n";
+}
+
+}  // namespace
+
+std::string svg_of(const Plot& plot) {
+  const traces::OutputFile script(std::filesystem::temp_directory_path() / "splatscope.gnuplot");
+  std::ofstream(script.temporary()) << script_of(plot);
+  std::FILE* pipe = ::popen(fmt::format("gnuplot {} 2>&1", quoted(script.temporary().string())).c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");
+  std::string text;
+  char part[4096];
+  for (std::size_t n = 0; (n = std::fread(part, 1, sizeof part, pipe)) > 0;) text.append(part, n);
+  if (::pclose(pipe) != 0) {
+    throw std::runtime_error(fmt::format("gnuplot failed ({}), expected the package gnuplot-nox", text));
+  }
+  return text;
+}
+
+}  // namespace splatscope::studies

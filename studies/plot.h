@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace splatscope::studies {
+
+// Curves over one pair of axes, drawn by gnuplot.
+struct Plot {
+  std::string title;
+  std::string x_label, y_label;  // with their units
+  bool log_x = false, log_y = false;
+  struct Series {
+    std::string name;
+    std::vector<double> x, y;  // of one length; values that are not finite are left out
+    bool joined = true;        // by a line; else points alone
+  };
+  std::vector<Series> series;
+};
+
+// The plot as the text of an SVG file. Throws std::runtime_error where gnuplot fails or is missing.
+std::string svg_of(const Plot& plot);
+
+}  // namespace splatscope::studies
