@@ -28,10 +28,13 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
       "  {} vertices shaded, {} triangles, {} fragments, of these {} passed the depth test\n", c.vertices,
       c.triangles, c.fragments, c.fragments_passed);
   std::cout << fmt::format(
-      "  triangles dropped: {} outside the frustum, {} before the near plane, {} not finite\n",
-      c.triangles_outside, c.triangles_behind, c.triangles_not_finite);
+      "  triangles dropped: {} outside the frustum, {} before the near plane, {} back-facing, {} not "
+      "finite\n",
+      c.triangles_outside, c.triangles_behind, c.triangles_back_facing, c.triangles_not_finite);
   if (!run.timing) return;
-  std::cout << fmt::format("  {} cycles, {:.2f} ms, {:.1f} frames a second\n", run.timing->cycles,
+  const std::size_t frames = run.timing->frame_cycles.size();
+  std::cout << fmt::format("  {}{} cycles, {:.2f} ms, {:.1f} frames a second\n",
+                           frames == 1 ? "" : fmt::format("{} frames, ", frames), run.timing->cycles,
                            1000 * run.timing->seconds, run.timing->frames_per_second());
   for (const auto& unit : run.timing->units_left_out)
     std::cout << fmt::format("  left out: {}: {}\n", unit.name, unit.why);
@@ -48,7 +51,9 @@ void run(const Options& options, bool quiet) {
       studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
   ProgressBar running("running", quiet);
-  const studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback());
+  const studies::FrameRun result =
+      studies::run_frame(input.trace, machine, fidelity, running.callback(),
+                         studies::earlier_frames_writer(input.trace, options.out));
   running.clear();
   studies::write_run(input, machine, fidelity, result, options.out);
   print(input, machine, result);
@@ -58,7 +63,7 @@ void run(const Options& options, bool quiet) {
 }  // namespace
 
 void add_run_command(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("run", "one frame on one machine");
+  CLI::App* command = app.add_subcommand("run", "the frame or frames of a scene or trace on one machine");
   const auto options = std::make_shared<Options>();
   command->add_option("INPUT", options->input, "scene file (TOML), name of a ready scene, or FILE.trace")
       ->required();

@@ -99,8 +99,10 @@ class TriangleStage {
     const primitive::Assembled assembled =
         primitive::assemble(triangle, viewport_, bindings_.attributes, pieces_);
     work.outcome = assembled.outcome;
-    work.pieces = static_cast<std::uint8_t>(assembled.pieces);
-    for (int piece = 0; piece < assembled.pieces; ++piece) rasterize(pieces_[piece], work);
+    const int kept = drop_culled(assembled.pieces);
+    if (kept == 0 && assembled.pieces != 0) work.outcome = TriangleOutcome::back_facing;
+    work.pieces = static_cast<std::uint8_t>(kept);
+    for (int piece = 0; piece < kept; ++piece) rasterize(pieces_[piece], work);
     if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
       work.outcome = TriangleOutcome::no_coverage;
     count(work);
@@ -109,6 +111,23 @@ class TriangleStage {
   void finish() { fragments_.flush(); }
 
  private:
+  // Moves the pieces that face the viewer to the front; returns how many. What decides is the sign on the
+  // grid that decides coverage, so a triangle that is dropped and its neighbour that is not never share a
+  // pixel.
+  int drop_culled(int pieces) {
+    const CullMode cull = bindings_.draw.state.cull;
+    if (cull == CullMode::none) return pieces;
+    const int dropped = cull == CullMode::clockwise ? 1 : -1;
+    const int bits = options_.formats.subpixel_bits;
+    int kept = 0;
+    for (int piece = 0; piece < pieces; ++piece) {
+      if (raster::winding(pieces_[piece], bits, raster::driver_rounding(bits)) != dropped) {
+        pieces_[kept++] = pieces_[piece];
+      }
+    }
+    return kept;
+  }
+
   void rasterize(const primitive::WindowTriangle& triangle, TriangleWork& work) {
     const raster::TriangleSetup setup =
         raster::set_up(triangle, viewport_, options_.formats.subpixel_bits,
@@ -155,6 +174,7 @@ class TriangleStage {
     counters_.triangles_outside += work.outcome == TriangleOutcome::outside_frustum;
     counters_.triangles_behind += work.outcome == TriangleOutcome::behind_near;
     counters_.triangles_not_finite += work.outcome == TriangleOutcome::not_finite;
+    counters_.triangles_back_facing += work.outcome == TriangleOutcome::back_facing;
     counters_.triangles_clipped += work.pieces > 1;
   }
 

@@ -71,35 +71,56 @@ class Programs {
   std::map<std::uint32_t, LoadedPixelProgram> pixel_;
 };
 
+// Does the commands of a trace, one after the other.
+class Renderer {
+ public:
+  Renderer(const Trace& trace, const RenderOptions& options, Rendered& rendered)
+      : trace_(trace), options_(options), rendered_(rendered), programs_(trace, options.formats) {
+    output::clear(Clear{}, rendered.frame);
+  }
+
+  void run(std::size_t command) {
+    std::visit([&](const auto& body) { run(command, body); }, trace_.commands[command]);
+  }
+
+ private:
+  void run(std::size_t, const Clear& clear) { output::clear(clear, rendered_.frame); }
+  void run(std::size_t, const NormalizeOnHost&) { output::normalize(rendered_.frame); }
+  void run(std::size_t, const Present&) {}
+  void run(std::size_t command, const Draw& draw) {
+    const LoadedPixelProgram* pixel = draw.pixel_program ? &programs_.pixel(*draw.pixel_program) : nullptr;
+    const DrawBindings bindings{draw,
+                                trace_.buffers[draw.vertex_buffer],
+                                trace_.buffers[draw.index_buffer],
+                                draw.texture ? &trace_.textures[*draw.texture] : nullptr,
+                                programs_.vertex(draw.vertex_program),
+                                pixel ? &pixel->program : nullptr,
+                                pixel ? std::span<const int>(pixel->attributes) : kDiffuseOnly};
+    DrawWork work;
+    work.command = static_cast<std::uint32_t>(command);
+    render_draw(bindings, options_, rendered_.frame, work, rendered_.counters);
+    if (options_.record_work) rendered_.work.push_back(std::move(work));
+  }
+
+  const Trace& trace_;
+  const RenderOptions& options_;
+  Rendered& rendered_;
+  Programs programs_;
+};
+
 }  // namespace
 
-Rendered render(const Trace& trace, const RenderOptions& options,
-                const std::function<void(double)>& progress) {
+Rendered render(const Trace& trace, const RenderOptions& options, const std::function<void(double)>& progress,
+                const std::function<void(const Frame&)>& on_frame) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
-  output::clear(Clear{}, rendered.frame);
-  Programs programs(trace, options.formats);
-  for (std::size_t i = 0; i < trace.commands.size(); ++i) {
-    if (progress) progress(static_cast<double>(i) / static_cast<double>(trace.commands.size()));
-    const Command& command = trace.commands[i];
-    if (const auto* clear = std::get_if<Clear>(&command)) {
-      output::clear(*clear, rendered.frame);
-    } else if (std::holds_alternative<NormalizeOnHost>(command)) {
-      output::normalize(rendered.frame);
-    } else {
-      const Draw& draw = std::get<Draw>(command);
-      const LoadedPixelProgram* pixel = draw.pixel_program ? &programs.pixel(*draw.pixel_program) : nullptr;
-      const DrawBindings bindings{draw,
-                                  trace.buffers[draw.vertex_buffer],
-                                  trace.buffers[draw.index_buffer],
-                                  draw.texture ? &trace.textures[*draw.texture] : nullptr,
-                                  programs.vertex(draw.vertex_program),
-                                  pixel ? &pixel->program : nullptr,
-                                  pixel ? std::span<const int>(pixel->attributes) : kDiffuseOnly};
-      DrawWork work;
-      work.command = static_cast<std::uint32_t>(i);
-      render_draw(bindings, options, rendered.frame, work, rendered.counters);
-      if (options.record_work) rendered.work.push_back(std::move(work));
+  Renderer renderer(trace, options, rendered);
+  std::size_t command = 0;
+  for (const std::size_t end : frame_ends(trace)) {
+    for (; command < end; ++command) {
+      if (progress) progress(static_cast<double>(command) / static_cast<double>(trace.commands.size()));
+      renderer.run(command);
     }
+    if (on_frame) on_frame(rendered.frame);
   }
   return rendered;
 }

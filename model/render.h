@@ -9,23 +9,24 @@
 #include "model/output/frame.h"
 #include "model/work/work.h"
 
-// The whole machine as a function: a trace in, its frame and its work out. No time.
+// The whole machine as a function: a trace in, its frames and its work out. No time.
 namespace splatscope {
 
 struct RenderOptions {
   NumberFormats formats;
   int vertex_cache_entries = 18;  // post-transform FIFO; a vertex still in it is not shaded again
-  bool record_work = true;        // false: the frame alone
+  bool record_work = true;        // false: the frames alone
 };
 
-// What became of the triangles and fragments of a frame.
+// What became of the triangles and fragments of a trace.
 struct RenderCounters {
   std::uint64_t vertices = 0;  // shaded
   std::uint64_t triangles = 0;
   std::uint64_t triangles_without_coverage = 0;
-  std::uint64_t triangles_outside = 0;     // of the frustum
-  std::uint64_t triangles_behind = 0;      // before the near plane or behind the eye
-  std::uint64_t triangles_not_finite = 0;  // NaN or INF positions: dropped
+  std::uint64_t triangles_outside = 0;      // of the frustum
+  std::uint64_t triangles_behind = 0;       // before the near plane or behind the eye
+  std::uint64_t triangles_not_finite = 0;   // NaN or INF positions: dropped
+  std::uint64_t triangles_back_facing = 0;  // dropped by the cull mode
   std::uint64_t triangles_clipped = 0;
   std::uint64_t quads = 0;
   std::uint64_t fragments = 0;         // covered pixels
@@ -33,15 +34,17 @@ struct RenderCounters {
 };
 
 struct Rendered {
-  Frame frame;
+  Frame frame;                 // the last one
   std::vector<DrawWork> work;  // one for each Draw of the trace, in order; empty without record_work
   RenderCounters counters;
 };
 
 // Draws every command of `trace`. The trace must hold together (traces/ checks one that comes from a file):
 // indices in range, index counts multiples of 3. Throws UserError where a program does not assemble.
-// `progress` is told the fraction done, from 0 to 1.
+// `progress` is told the fraction done, from 0 to 1. `on_frame` is given every frame of the trace
+// (`frame_ends`) when it is done, in order.
 Rendered render(const Trace& trace, const RenderOptions& options,
-                const std::function<void(double)>& progress = {});
+                const std::function<void(double)>& progress = {},
+                const std::function<void(const Frame&)>& on_frame = {});
 
 }  // namespace splatscope

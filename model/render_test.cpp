@@ -3,19 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 #include <limits>
+#include <numeric>
+#include <random>
+#include <span>
 #include <string>
 
 namespace splatscope {
 namespace {
 
-template <typename Value, std::size_t kCount>
-Buffer buffer_of(const std::array<Value, kCount>& values) {
-  Buffer buffer;
-  buffer.bytes.resize(sizeof(values));
-  std::memcpy(buffer.bytes.data(), values.data(), sizeof(values));
-  return buffer;
+template <typename Values>
+Buffer buffer_of(const Values& values) {
+  const auto bytes = std::as_bytes(std::span(values));
+  return {MemoryPlace::video, {bytes.begin(), bytes.end()}};
 }
 
 // One triangle over the whole of 4x4 pixels, with NaN in every texture coordinate.
@@ -35,6 +35,82 @@ Trace nan_triangle(const std::string& pixel_program) {
   draw.constants = {{kNan, kNan, kNan, kNan}};
   trace.commands = {Clear{{1, 1, 1, 1}, 1}, draw};
   return trace;
+}
+
+// White triangles of the given corners x y z w in clip space, on 16 x 16 pixels.
+template <std::size_t kCount>
+Trace white_triangles(const std::array<float, kCount>& corners, CullMode cull) {
+  Trace trace;
+  trace.width = trace.height = 16;
+  std::array<std::uint16_t, kCount / 4> indices;
+  std::iota(indices.begin(), indices.end(), std::uint16_t{0});
+  trace.buffers = {buffer_of(corners), buffer_of(indices)};
+  trace.programs = {{"white.vs", "vs_1_1\nmov oPos, v0\nmov oD0, c0\n"}};
+  Draw draw;
+  draw.vertex_stride = 16;
+  draw.attributes = {{0, VertexFormat::float4, 0}};
+  draw.index_buffer = 1;
+  draw.index_count = kCount / 4;
+  draw.constants = {{1, 1, 1, 1}};
+  draw.state.cull = cull;
+  trace.commands = {draw};
+  return trace;
+}
+
+TEST(Render, CullModeDropsTheWindingItNames) {
+  // Clockwise on the screen, whole and clipped by the near plane into two.
+  constexpr std::array<float, 24> kClockwise{-1, -1, 0.5f, 1, -1, 7, 0.5f, 1, 7, -1, 0.5f, 1,
+                                             -1, -1, 0.5f, 1, -1, 7, 0.5f, 1, 2, -1, -1,   1};
+  const Rendered all = render(white_triangles(kClockwise, CullMode::none), {});
+  EXPECT_EQ(all.counters.triangles_back_facing, 0u);
+  EXPECT_EQ(all.counters.triangles_clipped, 1u);
+  const Rendered kept = render(white_triangles(kClockwise, CullMode::counter_clockwise), {});
+  EXPECT_EQ(kept.frame, all.frame);
+  EXPECT_EQ(kept.counters.triangles_back_facing, 0u);
+  const Rendered dropped = render(white_triangles(kClockwise, CullMode::clockwise), {});
+  EXPECT_EQ(dropped.counters.triangles_back_facing, 2u);
+  EXPECT_EQ(dropped.counters.fragments, 0u);
+  for (const TriangleWork& triangle : dropped.work[0].triangles) {
+    EXPECT_EQ(triangle.outcome, TriangleOutcome::back_facing);
+    EXPECT_EQ(triangle.pieces, 0);
+  }
+}
+
+// Every triangle has one winding or none: with one of the modes it is there, with the other it is not.
+TEST(Render, TheTwoCullModesShareTheTrianglesBetweenThem) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> anywhere(-2, 2), w(-0.5f, 1.5f);
+  std::array<float, 12 * 500> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = i % 4 == 3 ? w(random) : anywhere(random);
+  const RenderCounters all = render(white_triangles(corners, CullMode::none), {}).counters;
+  const RenderCounters one = render(white_triangles(corners, CullMode::clockwise), {}).counters;
+  const RenderCounters other = render(white_triangles(corners, CullMode::counter_clockwise), {}).counters;
+  EXPECT_EQ(one.fragments + other.fragments, all.fragments);
+  EXPECT_GT(one.fragments, 0u);
+  EXPECT_GT(other.fragments, 0u);
+  EXPECT_LE(one.triangles_back_facing + other.triangles_back_facing,
+            all.triangles - all.triangles_outside - all.triangles_behind);
+}
+
+TEST(Render, EachPresentEndsAFrame) {
+  const auto reds = [](const std::vector<Command>& commands) {
+    Trace trace;
+    trace.width = trace.height = 1;
+    trace.commands = commands;
+    std::vector<float> seen;
+    const Rendered rendered =
+        render(trace, {}, {}, [&](const Frame& frame) { seen.push_back(frame.color(0)[0]); });
+    EXPECT_EQ(seen.back(), rendered.frame.color(0)[0]);
+    return seen;
+  };
+  const Clear red{{1, 0, 0, 1}, 1};
+  EXPECT_EQ(reds({}), std::vector<float>{0});
+  EXPECT_EQ(reds({red}), std::vector<float>{1});
+  EXPECT_EQ(reds({red, Present{}}), std::vector<float>{1});
+  EXPECT_EQ(reds({Present{}, red}), (std::vector<float>{0, 1}));
+  EXPECT_EQ(reds({red, Present{}, Present{}, Clear{}, Present{}}), (std::vector<float>{1, 1, 0}));
 }
 
 TEST(Render, NanDoesNotReachAFloatFrameBuffer) {

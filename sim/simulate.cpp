@@ -45,6 +45,18 @@ void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit,
   result.event_hash = (std::rotl(result.event_hash, 7) ^ unit.event_hash()) * 0x9e3779b97f4a7c15u;
 }
 
+// A frame lasts from the end of the one before it to the end of its last command.
+std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {
+  std::vector<Cycle> cycles;
+  Cycle start = 0;
+  for (const std::size_t end : frame_ends(trace)) {
+    const Cycle done = end == trace.commands.size() ? result.cycles : result.command_ends[end - 1];
+    cycles.push_back(done - start);
+    start = done;
+  }
+  return cycles;
+}
+
 void report_progress(const SimulatedMachine& machine, const std::function<void(double)>& progress) {
   double triangles = 0;
   for (const DrawJob& job : machine.jobs) triangles += static_cast<double>(job.work->triangles.size());
@@ -74,6 +86,7 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
   for (const Cycle end : machine->host->command_ends()) {
     result.command_ends.push_back(core_cycle(*machine, end));
   }
+  result.frame_cycles = cycles_of_frames(trace, result);
   result.units_left_out = machine->left_out;
   if (progress) progress(1);
   return result;

@@ -36,15 +36,19 @@ struct UnitStatistic {
 };
 
 struct Result {
-  Cycle cycles = 0;  // of the core clock, from the first command to the frame in memory
+  Cycle cycles = 0;  // of the core clock, from the first command to the last frame in memory
   double seconds = 0;
   std::uint64_t event_hash = 0;  // of every retirement and every memory decision with its cycle
   std::vector<UnitBooks> units;
   std::vector<UnitStatistic> statistics;
   std::vector<UnitLeftOut> units_left_out;
   std::vector<Cycle> command_ends;  // core cycle at which each command of the trace was done
+  std::vector<Cycle> frame_cycles;  // of each frame (`frame_ends`); they add up to `cycles`
 
-  double frames_per_second() const { return 1 / seconds; }
+  double seconds_of(Cycle some) const {
+    return seconds * (static_cast<double>(some) / static_cast<double>(cycles));
+  }
+  double frames_per_second() const { return static_cast<double>(frame_cycles.size()) / seconds; }
 };
 
 // Simulates `trace`, whose draws gave the stages `work` to do (one record for each Draw, in order), on

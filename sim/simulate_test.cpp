@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "model/error.h"
 #include "sim/testing/random_trace.h"
@@ -69,6 +70,7 @@ TEST_P(RandomTraces, TheRefereeAgreesWithSkipAheadInEveryEventAndEveryBook) {
   EXPECT_EQ(fast.event_hash, dull.event_hash);
   EXPECT_EQ(fast.cycles, dull.cycles);
   EXPECT_EQ(fast.command_ends, dull.command_ends);
+  EXPECT_EQ(fast.frame_cycles, dull.frame_cycles);
   ASSERT_EQ(fast.units.size(), dull.units.size());
   for (std::size_t i = 0; i < fast.units.size(); ++i) {
     const UnitBooks& a = fast.units[i];
@@ -105,6 +107,8 @@ TEST_P(RandomTraces, EveryItemOfTheWorkIsDoneOnce) {
   if (!result.command_ends.empty()) {
     EXPECT_EQ(result.command_ends.back(), result.cycles);
   }
+  EXPECT_EQ(result.frame_cycles.size(), frame_ends(made.trace).size());
+  EXPECT_EQ(std::accumulate(result.frame_cycles.begin(), result.frame_cycles.end(), Cycle{0}), result.cycles);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomTraces, ::testing::Range(1u, 51u));
@@ -120,6 +124,25 @@ TEST(Simulate, TheSameRunTwiceInAProcessIsTheSame) {
   }
   EXPECT_GT(first.cycles, 0u);
   EXPECT_NEAR(first.seconds, static_cast<double>(first.cycles) / 275e6, 1e-6 * first.seconds);
+}
+
+// A frame costs the same wherever it stands, but for the caches, which are empty at first.
+TEST(Simulate, EachFrameOfATraceHasItsCycles) {
+  RandomTrace made = simple_trace(200);
+  made.trace.commands.emplace_back(Present{});
+  const Result alone = simulate(made.trace, made.work, machine::load("geforce4-ti4400"));
+  const Command clear = made.trace.commands[0], draw = made.trace.commands[1];
+  made.trace.commands = {clear, draw, Present{}, clear, draw, Present{}, clear, draw, Present{}};
+  made.work = {made.work[0], made.work[0], made.work[0]};
+  for (std::size_t i = 0; i < 3; ++i) made.work[i].command = static_cast<std::uint32_t>(3 * i + 1);
+  const Result three = simulate(made.trace, made.work, machine::load("geforce4-ti4400"));
+  ASSERT_EQ(three.frame_cycles.size(), 3u);
+  EXPECT_EQ(alone.frame_cycles, std::vector<Cycle>{alone.cycles});
+  for (const Cycle cycles : three.frame_cycles) {
+    EXPECT_NEAR(static_cast<double>(cycles), static_cast<double>(alone.cycles),
+                0.05 * static_cast<double>(alone.cycles));
+  }
+  EXPECT_NEAR(three.frames_per_second(), alone.frames_per_second(), 0.05 * alone.frames_per_second());
 }
 
 TEST(Simulate, VertexBoundDrawsTakeTheScheduledClocksAVertex) {

@@ -21,11 +21,26 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Json frame_json(const sim::Result& timing) {
-  return {{"cycles", timing.cycles},
-          {"milliseconds", 1000 * timing.seconds},
-          {"frames_per_second", timing.frames_per_second()},
-          {"event_hash", fmt::format("{:016x}", timing.event_hash)}};
+// Of the last of `frames` and of the ones before it.
+std::string picture_name(std::size_t number, std::size_t frames) {
+  return number + 1 == frames ? "frame.png" : fmt::format("frame-{:03}.png", number);
+}
+
+Json frames_json(const FrameRun& run, std::size_t frames) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < frames; ++i) {
+    Json frame = {{"picture", picture_name(i, frames)}};
+    if (run.timing) {
+      const sim::Cycle cycles = run.timing->frame_cycles[i];
+      const double seconds = run.timing->seconds_of(cycles);
+      frame["cycles"] = cycles;
+      frame["milliseconds"] = 1000 * seconds;
+      frame["frames_per_second"] = 1 / seconds;
+      frame["event_hash"] = fmt::format("{:016x}", run.timing->event_hash);  // of the whole run
+    }
+    out.push_back(std::move(frame));
+  }
+  return out;
 }
 
 Json units_json(const sim::Result& timing) {
@@ -50,6 +65,7 @@ Json counters_json(const RenderCounters& c) {
           {"triangles_outside_frustum", c.triangles_outside},
           {"triangles_behind_near", c.triangles_behind},
           {"triangles_not_finite", c.triangles_not_finite},
+          {"triangles_back_facing", c.triangles_back_facing},
           {"triangles_clipped", c.triangles_clipped},
           {"quads", c.quads},
           {"fragments", c.fragments},
@@ -106,14 +122,18 @@ Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& n
   return {scene.name, std::move(recording.trace), recording.counts, scene.skipped};
 }
 
-FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress) {
+FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
+                   const OnFrame& on_frame) {
   const auto start = std::chrono::steady_clock::now();
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
   options.record_work = fidelity != Fidelity::functional;
   constexpr double kFunctionShare = 0.2;  // of the time of a run with timing, about
-  FrameRun run{render(trace, options, part(progress, 0, options.record_work ? kFunctionShare : 1)), {}, 0, 0};
+  FrameRun run{render(trace, options, part(progress, 0, options.record_work ? kFunctionShare : 1), on_frame),
+               {},
+               0,
+               0};
   if (options.record_work) {
     const auto timing_start = std::chrono::steady_clock::now();
     const auto scheduler =
@@ -151,8 +171,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   results["input"] = input.name;
   results["machine"] = machine.name;
   results["fidelity"] = name(fidelity);
-  results["frames"] = Json::array();
-  if (run.timing) results["frames"].push_back(frame_json(*run.timing));
+  results["frames"] = frames_json(run, frame_ends(input.trace).size());
   results["programs"] = Json::array();
   for (const ShaderText& program : input.trace.programs) {
     results["programs"].push_back(
@@ -173,6 +192,13 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
     results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.timing_seconds;
   }
   return results;
+}
+
+OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder) {
+  return [folder, frames = frame_ends(trace).size(), number = std::size_t{0}](const Frame& frame) mutable {
+    if (number + 1 < frames) write_png(picture_of(frame), folder / picture_name(number, frames));
+    ++number;
+  };
 }
 
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,

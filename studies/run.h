@@ -14,7 +14,7 @@
 #include "studies/study.h"
 #include "traces/recorder.h"
 
-// One frame of a scene or a trace on one machine.
+// The frames of a scene or a trace on one machine.
 namespace splatscope::studies {
 
 enum class Fidelity { functional, cycle, referee };
@@ -22,6 +22,8 @@ enum class Fidelity { functional, cycle, referee };
 // "functional", "cycle", "referee". Throws UserError (file "--fidelity") for another name.
 Fidelity fidelity_by_name(std::string_view name);
 std::string_view name(Fidelity fidelity);
+
+using OnFrame = std::function<void(const Frame&)>;  // given each frame of a trace, in order
 
 // What is run: a trace, and what the host knows about it where it was recorded from a scene.
 struct Input {
@@ -48,7 +50,7 @@ struct FrameRun {
 
 // The records of work are dropped once they are simulated.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
-                   const Progress& progress = {});
+                   const Progress& progress = {}, const OnFrame& on_frame = {});
 
 // The picture with its alpha set to 1, and the depths.
 Image picture_of(const Frame& frame);
@@ -58,7 +60,11 @@ GrayImage depth_of(const Frame& frame);
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
                                   const FrameRun& run);
 
-// Writes frame.exr, frame.png, depth.exr and results.json into `folder`, which exists.
+// Writes the frames of `trace` before its last one as frame-000.png, frame-001.png, ... into `folder`, which
+// exists.
+OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder);
+
+// Writes frame.exr, frame.png and depth.exr of the last frame and results.json into `folder`, which exists.
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder);
 

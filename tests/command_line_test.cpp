@@ -6,6 +6,7 @@
 
 #include "program.h"
 #include "studies/image_io.h"
+#include "traces/trace_file.h"
 
 // What scripts and users rely on: exit status, one line on standard error, and no half-written file.
 namespace splatscope::tests {
@@ -169,6 +170,31 @@ TEST(CommandLine, TraceOfASceneRunsAsTheScene) {
     return nlohmann::json::parse(text_of(folder.path() / run / "results.json"))["frames"];
   };
   EXPECT_EQ(frames("a"), frames("b"));
+}
+
+// Red, then green, then the same again: two pictures before the last.
+TEST(CommandLine, EveryFrameOfATraceIsWritten) {
+  const ScratchFolder folder;
+  Trace trace;
+  trace.width = trace.height = 4;
+  trace.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}, Present{}};
+  traces::write_trace(trace, folder.path() / "three.trace");
+  for (const std::string fidelity : {"functional", "cycle"}) {
+    const Outcome run =
+        run_program({"run", "three.trace", "--out", "out", "--fidelity", fidelity}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.error;
+    const auto frames = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["frames"];
+    ASSERT_EQ(frames.size(), 3u);
+    const char* names[] = {"frame-000.png", "frame-001.png", "frame.png"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(frames[i]["picture"], names[i]);
+      EXPECT_EQ(frames[i].contains("cycles"), fidelity == "cycle");
+      const auto picture = studies::read_image(folder.path() / "out" / names[i]);
+      EXPECT_EQ(picture.at(3, 3), (std::array<float, 4>{i == 0 ? 1.0f : 0.0f, i == 0 ? 0.0f : 1.0f, 0, 1}));
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/frame-002.png"));
+    std::filesystem::remove_all(folder.path() / "out");
+  }
 }
 
 TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {

@@ -16,6 +16,7 @@ constexpr std::uint32_t kMaxFrameEdge = 4096;    // pixels
 constexpr std::uint32_t kMaxTextureEdge = 2048;  // texels: the limit of both machines of 2002
 constexpr std::uint32_t kMaxStride = 1024;       // bytes: 16 attributes of 16 bytes, and room
 constexpr std::size_t kMaxConstants = 96;        // vs_1_1
+constexpr std::size_t kMaxFrames = 1000;         // each is a picture of `run`
 constexpr std::uint8_t kInputs = 16;             // vs_1_1
 
 struct Loaded {
@@ -44,6 +45,7 @@ class Checker {
       where_ = fmt::format("program {}", i);
       programs_.push_back(check_program(trace_.programs[i]));
     }
+    in_range("number of frames", frame_ends(trace_).size(), 1, kMaxFrames);
     for (std::size_t i = 0; i < trace_.commands.size(); ++i) {
       where_ = fmt::format("command {}", i);
       std::visit([this](const auto& command) { check_command(command); }, trace_.commands[i]);
@@ -113,6 +115,7 @@ class Checker {
   }
 
   void check_command(const NormalizeOnHost&) const {}
+  void check_command(const Present&) const {}
 
   void check_command(const Clear& clear) const {
     for (float channel : clear.color) in_unit_range("clear color", channel);
@@ -126,6 +129,8 @@ class Checker {
     const auto last = static_cast<unsigned>(BlendFactor::src_alpha_saturate);
     in_range("source blend factor", static_cast<unsigned>(draw.state.source_factor), 0, last);
     in_range("destination blend factor", static_cast<unsigned>(draw.state.destination_factor), 0, last);
+    in_range("cull mode", static_cast<unsigned>(draw.state.cull), 0,
+             static_cast<unsigned>(CullMode::counter_clockwise));
     check_attributes(draw);
     check_indices(draw);
   }

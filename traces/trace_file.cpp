@@ -28,7 +28,8 @@ fb::Offset<stored::Draw> pack(fb::FlatBufferBuilder& builder, const Draw& draw) 
   const DrawState& s = draw.state;
   const auto state = stored::CreateDrawState(builder, s.depth_test, s.depth_write, s.color_write, s.blend,
                                              static_cast<stored::BlendFactor>(s.source_factor),
-                                             static_cast<stored::BlendFactor>(s.destination_factor));
+                                             static_cast<stored::BlendFactor>(s.destination_factor),
+                                             static_cast<stored::CullMode>(s.cull));
   stored::DrawBuilder out(builder);
   out.add_vertex_program(draw.vertex_program);
   if (draw.pixel_program) out.add_pixel_program(*draw.pixel_program);
@@ -54,6 +55,10 @@ fb::Offset<stored::NormalizeOnHost> pack(fb::FlatBufferBuilder& builder, const N
   return stored::CreateNormalizeOnHost(builder);
 }
 
+fb::Offset<stored::Present> pack(fb::FlatBufferBuilder& builder, const Present&) {
+  return stored::CreatePresent(builder);
+}
+
 constexpr stored::CommandBody kind(const Clear&) {
   return stored::CommandBody::Clear;
 }
@@ -62,6 +67,9 @@ constexpr stored::CommandBody kind(const Draw&) {
 }
 constexpr stored::CommandBody kind(const NormalizeOnHost&) {
   return stored::CommandBody::NormalizeOnHost;
+}
+constexpr stored::CommandBody kind(const Present&) {
+  return stored::CommandBody::Present;
 }
 
 void pack(fb::FlatBufferBuilder& builder, const Trace& trace) {
@@ -145,7 +153,8 @@ class Reader {
       return Clear{unpack(*clear->color()), clear->depth()};
     if (const stored::Draw* draw = command.body_as_Draw()) return unpack(*draw);
     if (command.body_as_NormalizeOnHost()) return NormalizeOnHost{};
-    throw UserError(file_, 0, "holds an unknown command, expected clear, draw or normalize");
+    if (command.body_as_Present()) return Present{};
+    throw UserError(file_, 0, "holds an unknown command, expected clear, draw, normalize or present");
   }
 
   Draw unpack(const stored::Draw& in) {
@@ -173,7 +182,8 @@ class Reader {
                   s.color_write(),
                   s.blend(),
                   static_cast<BlendFactor>(s.source_factor()),
-                  static_cast<BlendFactor>(s.destination_factor())};
+                  static_cast<BlendFactor>(s.destination_factor()),
+                  static_cast<CullMode>(s.cull())};
     return draw;
   }
 

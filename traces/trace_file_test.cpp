@@ -40,7 +40,8 @@ Draw small_draw() {
   draw.first_index = 1;
   draw.index_count = 6;
   draw.constants = {{1, 2, 3, 4}, {-0.0f, 1e-40f, std::numeric_limits<float>::infinity(), 7}};
-  draw.state = {false, true, false, true, BlendFactor::src_alpha, BlendFactor::dst_color};
+  draw.state = {
+      false, true, false, true, BlendFactor::src_alpha, BlendFactor::dst_color, CullMode::counter_clockwise};
   return draw;
 }
 
@@ -54,7 +55,7 @@ Trace small_trace() {
   for (std::byte b : std::as_bytes(std::span(indices))) trace.buffers[1].bytes.push_back(b);
   trace.textures = {{3, 2, {1, 2, 3, 4, 5, 255}}};
   trace.programs = {{"a.vs", "vs_1_1\nmov oPos, v0\n"}, {"b.ps", "ps_1_1\ntex t0\nmul r0, v0, t0.a\n"}};
-  trace.commands = {Clear{{0.25f, 0.5f, 0.75f, 1}, 0.5f}, small_draw(), NormalizeOnHost{}};
+  trace.commands = {Clear{{0.25f, 0.5f, 0.75f, 1}, 0.5f}, small_draw(), NormalizeOnHost{}, Present{}};
   return trace;
 }
 
@@ -82,6 +83,7 @@ void expect_equal(const Draw& a, const Draw& b) {
   EXPECT_EQ(a.state.blend, b.state.blend);
   EXPECT_EQ(a.state.source_factor, b.state.source_factor);
   EXPECT_EQ(a.state.destination_factor, b.state.destination_factor);
+  EXPECT_EQ(a.state.cull, b.state.cull);
 }
 
 void expect_equal(const Trace& a, const Trace& b) {
@@ -124,6 +126,14 @@ class TraceFile : public testing::Test {
 TEST_F(TraceFile, WhatIsWrittenIsReadBack) {
   write_trace(small_trace(), path_);
   expect_equal(small_trace(), read_trace(path_));
+}
+
+// A file that the first version wrote: no culling, no frames.
+TEST_F(TraceFile, FilesOfVersion1AreRead) {
+  Trace trace = small_trace();
+  std::get<Draw>(trace.commands[1]).state.cull = CullMode::none;
+  trace.commands.pop_back();
+  expect_equal(trace, read_trace(SPLATSCOPE_SOURCE "/tests/traces/version_1.trace"));
 }
 
 TEST_F(TraceFile, AbsentProgramAndTextureStayAbsent) {
@@ -175,7 +185,7 @@ TEST_F(TraceFile, NewerVersionIsRefusedByName) {
     read_trace(path_);
     FAIL() << "a newer version was let in";
   } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 2, expected at most 1"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("version 3, expected at most 2"), std::string::npos)
         << error.what();
   }
 }
@@ -255,6 +265,9 @@ std::vector<Breakage> breakages() {
       {"constants", [](Trace&, Draw& d) { d.constants.resize(97); }, "number of constants is 97"},
       {"source", [](Trace&, Draw& d) { d.state.source_factor = BlendFactor(11); },
        "source blend factor is 11"},
+      {"cull", [](Trace&, Draw& d) { d.state.cull = CullMode(3); }, "cull mode is 3, expected 0 to 2"},
+      {"frames", [](Trace& t, Draw&) { t.commands.resize(t.commands.size() + 1000, Present{}); },
+       "number of frames is 1001, expected 1 to 1000"},
       {"dest", [](Trace&, Draw& d) { d.state.destination_factor = BlendFactor(255); }, "blend factor is 255"},
   };
 }

@@ -18,6 +18,10 @@ std::string describe(const Trace&, const NormalizeOnHost&) {
   return "normalize on the host";
 }
 
+std::string describe(const Trace&, const Present&) {
+  return "present";
+}
+
 std::string describe(const Trace& trace, const Draw& draw) {
   std::string text =
       fmt::format("draw {} triangles, {}", draw.index_count / 3, trace.programs[draw.vertex_program].name);
@@ -29,6 +33,8 @@ std::string describe(const Trace& trace, const Draw& draw) {
   if (s.depth_test) text += ", depth test";
   if (s.depth_write) text += ", depth write";
   if (s.color_write) text += s.blend ? ", blended" : ", colour write";
+  if (s.cull == CullMode::clockwise) text += ", clockwise culled";
+  if (s.cull == CullMode::counter_clockwise) text += ", counter-clockwise culled";
   return text;
 }
 
@@ -37,6 +43,7 @@ std::string describe(const Trace& trace, const Draw& draw) {
 std::string describe(const Trace& trace) {
   std::string text =
       fmt::format("version    {}\nframe      {} x {}\n", kTraceVersion, trace.width, trace.height);
+  text += fmt::format("frames     {}\n", frame_ends(trace).size());
   for (std::size_t i = 0; i < trace.buffers.size(); ++i)
     text += fmt::format("buffer     {}: {} bytes in {} memory\n", i, trace.buffers[i].bytes.size(),
                         name(trace.buffers[i].place));

@@ -45,6 +45,9 @@ struct ShaderText {
   std::string text;  // assembly, vs_1_1 or ps_1_x
 };
 
+// Which triangles are dropped: those whose corners run this way round in the window, y down (D3DRS_CULLMODE).
+enum class CullMode : std::uint8_t { none, clockwise, counter_clockwise };
+
 // Fixed-function state of a draw.
 struct DrawState {
   bool depth_test = true;  // passes where depth <= stored depth
@@ -53,6 +56,7 @@ struct DrawState {
   bool blend = false;  // out = src*source_factor + dst*destination_factor
   BlendFactor source_factor = BlendFactor::one;
   BlendFactor destination_factor = BlendFactor::zero;
+  CullMode cull = CullMode::none;
 };
 
 // Indexed triangle list. Indices into `programs`, `buffers`, `textures` of the trace.
@@ -80,9 +84,12 @@ struct Clear {
 // and writes it back: per-pixel normalisation, Ren 2002, section 7.
 struct NormalizeOnHost {};
 
-using Command = std::variant<Clear, Draw, NormalizeOnHost>;
+// Ends a frame: the picture at this point is shown. The surfaces keep what they hold.
+struct Present {};
 
-// One frame of `width` x `height` pixels, at most 4096 each.
+using Command = std::variant<Clear, Draw, NormalizeOnHost, Present>;
+
+// Frames of `width` x `height` pixels, at most 4096 each.
 struct Trace {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -91,5 +98,9 @@ struct Trace {
   std::vector<ShaderText> programs;
   std::vector<Command> commands;
 };
+
+// How many of the commands are done at the end of each frame. The end of the trace ends a frame too where
+// something follows the last Present, or there is none: at least one frame.
+std::vector<std::size_t> frame_ends(const Trace& trace);
 
 }  // namespace splatscope

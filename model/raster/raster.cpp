@@ -29,6 +29,16 @@ int first_pixel(std::int64_t coordinate, int shift) {
   return static_cast<int>((coordinate + pixel / 2 - 1) >> shift);
 }
 
+std::array<Point, 3> snap_corners(const primitive::WindowTriangle& triangle, int subpixel_bits,
+                                  double rounding) {
+  std::array<Point, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    corners[i] = {snap(triangle[i].x + rounding, subpixel_bits),
+                  snap(triangle[i].y + rounding, subpixel_bits)};
+  }
+  return corners;
+}
+
 void set_up_planes(const primitive::WindowTriangle& triangle, TriangleSetup& setup) {
   const auto& [v0, v1, v2] = triangle;
   const double x1 = v1.x - v0.x, y1 = v1.y - v0.y, x2 = v2.x - v0.x, y2 = v2.y - v0.y;
@@ -66,10 +76,7 @@ TriangleSetup set_up(const primitive::WindowTriangle& triangle, const primitive:
   TriangleSetup setup;
   // Twice the grid, so that pixel centres lie on it for 0 subpixel bits too.
   const int shift = subpixel_bits + 1;
-  Point p[3];
-  for (int i = 0; i < 3; ++i) {
-    p[i] = {snap(triangle[i].x + rounding, subpixel_bits), snap(triangle[i].y + rounding, subpixel_bits)};
-  }
+  std::array<Point, 3> p = snap_corners(triangle, subpixel_bits, rounding);
   const std::int64_t area = doubled_area(p[0], p[1], p[2]);
   if (area == 0) return setup;
 
@@ -84,10 +91,16 @@ TriangleSetup set_up(const primitive::WindowTriangle& triangle, const primitive:
   if (area < 0) std::swap(p[1], p[2]);
   const std::int64_t pixel = std::int64_t{1} << shift;
   const Point centre{setup.left * pixel + pixel / 2, setup.top * pixel + pixel / 2};
-  for (int i = 0; i < 3; ++i) setup.edges[i] = make_edge(p[i], p[(i + 1) % 3], centre, pixel);
+  for (std::size_t i = 0; i < 3; ++i) setup.edges[i] = make_edge(p[i], p[(i + 1) % 3], centre, pixel);
   set_up_planes(triangle, setup);
   setup.covers = true;
   return setup;
+}
+
+int winding(const primitive::WindowTriangle& triangle, int subpixel_bits, double rounding) {
+  const auto [a, b, c] = snap_corners(triangle, subpixel_bits, rounding);
+  const std::int64_t area = doubled_area(a, b, c);
+  return (area > 0) - (area < 0);
 }
 
 std::uint32_t tiles_touched(const TriangleSetup& setup) {

@@ -45,6 +45,10 @@ inline double driver_rounding(int subpixel_bits) {
 TriangleSetup set_up(const primitive::WindowTriangle& triangle, const primitive::Viewport& viewport,
                      int subpixel_bits, double rounding);
 
+// Which way round the corners run in the window on the subpixel grid: positive clockwise, negative
+// counter-clockwise, 0 without area.
+int winding(const primitive::WindowTriangle& triangle, int subpixel_bits, double rounding);
+
 // 8x8-pixel tiles that the rectangle of a setup touches.
 std::uint32_t tiles_touched(const TriangleSetup& setup);
 

@@ -140,6 +140,16 @@ TEST(Raster, PlanesInterpolatePerspectiveCorrectly) {
   EXPECT_NEAR(z, setup.depth.at(dx, dy), 1e-6);
 }
 
+TEST(Raster, WindingIsThatOfTheSnappedCorners) {
+  EXPECT_EQ(1, winding(triangle(10, 10, 20, 10, 10, 20), 4, 0));  // clockwise, y down
+  EXPECT_EQ(-1, winding(triangle(10, 10, 10, 20, 20, 10), 4, 0));
+  EXPECT_EQ(0, winding(triangle(5, 5, 20, 20, 10, 10), 4, 0));
+  // Clockwise by less than a step of a coarse grid: snapped to the other way round, or to nothing.
+  EXPECT_EQ(1, winding(triangle(0, 0, 20, 10.9, 10, 5.46), 8, 0));
+  EXPECT_EQ(-1, winding(triangle(0, 0, 20, 10.9, 10, 5.46), 0, 0.5));
+  EXPECT_EQ(0, winding(triangle(0, 0, 20, 10.9, 10, 5.46), 0, 0));
+}
+
 TEST(Raster, CountsTiles) {
   EXPECT_EQ(1u, tiles_touched(set_up(triangle(1, 1, 7, 1, 1, 7), kViewport, 4, 0)));
   EXPECT_EQ(4u, tiles_touched(set_up(triangle(1, 1, 12, 1, 1, 12), kViewport, 4, 0)));

@@ -12,14 +12,15 @@ enum class TriangleOutcome : std::uint8_t {
   no_coverage,      // no pixel centre inside (degenerate ones too)
   outside_frustum,  // wholly outside one clip plane
   behind_near,      // wholly before the near plane or behind the eye
-  not_finite        // a NaN or INF position: dropped, and counted
+  not_finite,       // a NaN or INF position: dropped, and counted
+  back_facing       // dropped by the draw's cull mode
 };
 
 struct TriangleWork {
   std::uint32_t quad_count = 0;   // 2x2 quads with coverage, in raster order
   std::uint32_t tile_count = 0;   // 8x8-pixel tiles the rasteriser visited
   std::uint8_t new_vertices = 0;  // 0..3 not found in the post-transform FIFO: they are shaded first
-  std::uint8_t pieces = 1;        // triangles after clipping; 0 when rejected
+  std::uint8_t pieces = 1;        // triangles after clipping and culling; 0 when rejected
   TriangleOutcome outcome = TriangleOutcome::drawn;
 };
 

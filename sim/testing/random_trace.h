@@ -36,7 +36,10 @@ class RandomMaker {
     if (chance(0.8)) made.trace.commands.emplace_back(Clear{});
     const auto draws = number(0, 3);
     const bool has_color = chance(0.8);
-    for (std::uint32_t i = 0; i < draws; ++i) add_draw(made, has_color);
+    for (std::uint32_t i = 0; i < draws; ++i) {
+      add_draw(made, has_color);
+      if (chance(0.2)) made.trace.commands.emplace_back(Present{});
+    }
     if (chance(0.3)) made.trace.commands.emplace_back(NormalizeOnHost{});
     return made;
   }

@@ -11,7 +11,7 @@ void Host::connect(Channel<Order>& orders, Channel<std::uint32_t>& reports) {
   reports_ = &reports;
 }
 
-// After the last command, and before the host reads the frame, the caches are written back.
+// Before a frame is shown, and before the host reads it, the caches are written back.
 Step Host::send(Cycle now) {
   if (!orders_->can_push(now)) return blocked(orders_->consumer(), orders_->next_free());
   Order order{OrderKind::flush, 0};
@@ -32,10 +32,7 @@ Step Host::report(Cycle now) {
   event(now, command_);
   if (at_end()) {
     if (!ends_.empty()) ends_.back() = now;
-    finished_ = true;
-    finished_at_ = now;
-    phase_ = Phase::done;
-    return idle();
+    return finish(now);
   }
   if (std::holds_alternative<NormalizeOnHost>(trace_.commands[command_])) {
     phase_ = Phase::normalizing;
@@ -44,8 +41,16 @@ Step Host::report(Cycle now) {
     ready_ = now;
     return busy(now + 1);
   }
+  const bool shown = std::holds_alternative<Present>(trace_.commands[command_]);
   next_command(now);
-  return busy(ready_);
+  return shown && at_end() ? finish(now) : busy(ready_);
+}
+
+Step Host::finish(Cycle now) {
+  finished_ = true;
+  finished_at_ = now;
+  phase_ = Phase::done;
+  return idle();
 }
 
 void Host::next_command(Cycle now) {

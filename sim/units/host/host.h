@@ -31,7 +31,8 @@ class Host final : public Unit {
 
   bool is_finished() const { return finished_; }
   Cycle finished_at() const { return finished_at_; }
-  // Bus cycle at which each command was done; the last one includes writing the caches back.
+  // Bus cycle at which each command was done; the last one includes writing the caches back, as a Present
+  // does.
   const std::vector<Cycle>& command_ends() const { return ends_; }
 
  private:
@@ -41,6 +42,7 @@ class Host final : public Unit {
   void prepare(Cycle now);
   Step send(Cycle now);
   Step report(Cycle now);
+  Step finish(Cycle now);
   Step normalize(Cycle now);
   bool at_end() const { return command_ == trace_.commands.size(); }
 

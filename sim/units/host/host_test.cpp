@@ -35,6 +35,25 @@ class Echo final : public Unit {
   testing::Timed<OrderKind> orders_;
 };
 
+constexpr Femtoseconds kPeriod = 10'000'000;  // ten nanoseconds
+
+// A host between nothing and the echo, run to its end.
+struct HostRun {
+  HostRun(const Machine::Host& spec, const Trace& trace, const Host::Frame& frame)
+      : host("host", spec, kPeriod, trace, frame) {
+    bus.add(host, 0);
+    bus.add(echo, 1);
+    host.connect(orders, reports);
+    echo.connect(orders, reports);
+    bus.run(kNever - 1);
+  }
+  ClockDomain bus{"bus", kPeriod, kPeriod, Scheduler::skip_ahead};
+  Host host;
+  Echo echo;
+  Channel<Order> orders{"orders", host, echo, 1};
+  Channel<std::uint32_t> reports{"reports", echo, host, 1};
+};
+
 TEST(Host, SendsOneCommandAfterTheOtherAndNormalisesPixelByPixel) {
   Trace trace;
   trace.width = 3;
@@ -46,17 +65,8 @@ TEST(Host, SendsOneCommandAfterTheOtherAndNormalisesPixelByPixel) {
   spec.uncached_read_bytes = 1;
   spec.division_nanoseconds = 30;
   spec.write_bytes_per_clock = 2;
-  constexpr Femtoseconds period = 10'000'000;  // ten nanoseconds
-  ClockDomain bus("bus", period, period, Scheduler::skip_ahead);
-  Host host("host", spec, period, trace, {6, 4});
-  Echo echo;
-  bus.add(host, 0);
-  bus.add(echo, 1);
-  Channel<Order> orders("orders", host, echo, 1);
-  Channel<std::uint32_t> reports("reports", echo, host, 1);
-  host.connect(orders, reports);
-  echo.connect(orders, reports);
-  bus.run(kNever - 1);
+  const HostRun run(spec, trace, {6, 4});
+  const Host& host = run.host;
 
   ASSERT_TRUE(host.is_finished());
   // 10 cycles of preparation (none before the last), seen by the echo one later, its report one later.
@@ -64,10 +74,25 @@ TEST(Host, SendsOneCommandAfterTheOtherAndNormalisesPixelByPixel) {
                                            {22 + 11, OrderKind::draw},
                                            {44 + 11, OrderKind::flush},
                                            {66 + 6 * 25 + 2, OrderKind::flush}};
-  EXPECT_EQ(echo.orders(), expected);
+  EXPECT_EQ(run.echo.orders(), expected);
   // A pixel: four reads of 5 cycles, 3 to divide, 2 to write; a cycle to turn to the last order.
   EXPECT_EQ(host.command_ends(), (std::vector<Cycle>{22, 44, 66 + 6 * 25 + 13}));
   EXPECT_EQ(host.finished_at(), host.command_ends().back());
+}
+
+TEST(Host, PresentWritesTheCachesBackAndTheLastOneEndsTheRun) {
+  Trace trace;
+  trace.commands = {Draw{}, Present{}, Draw{}, Present{}};
+  Machine::Host spec;
+  spec.command_nanoseconds = 100;
+  const HostRun run(spec, trace, {6, 4});
+  const testing::Timed<OrderKind> expected{{11, OrderKind::draw},
+                                           {22 + 11, OrderKind::flush},
+                                           {44 + 11, OrderKind::draw},
+                                           {66 + 11, OrderKind::flush}};
+  EXPECT_EQ(run.echo.orders(), expected);
+  EXPECT_EQ(run.host.command_ends(), (std::vector<Cycle>{22, 44, 66, 88}));
+  EXPECT_EQ(run.host.finished_at(), 88u);
 }
 
 }  // namespace
