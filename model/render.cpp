@@ -2,6 +2,8 @@
 
 #include <map>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "model/draw.h"
 #include "model/error.h"
@@ -71,16 +73,21 @@ class Programs {
   std::map<std::uint32_t, LoadedPixelProgram> pixel_;
 };
 
-// Does the commands of a trace, one after the other.
+// Does commands on the resources of a trace, one after the other.
 class Renderer {
  public:
-  Renderer(const Trace& trace, const RenderOptions& options, Rendered& rendered)
-      : trace_(trace), options_(options), rendered_(rendered), programs_(trace, options.formats) {
+  Renderer(const Trace& trace, std::span<const Command> commands, const RenderOptions& options,
+           Rendered& rendered)
+      : trace_(trace),
+        commands_(commands),
+        options_(options),
+        rendered_(rendered),
+        programs_(trace, options.formats) {
     output::clear(Clear{}, rendered.frame);
   }
 
   void run(std::size_t command) {
-    std::visit([&](const auto& body) { run(command, body); }, trace_.commands[command]);
+    std::visit([&](const auto& body) { run(command, body); }, commands_[command]);
   }
 
  private:
@@ -103,6 +110,7 @@ class Renderer {
   }
 
   const Trace& trace_;
+  std::span<const Command> commands_;
   const RenderOptions& options_;
   Rendered& rendered_;
   Programs programs_;
@@ -113,7 +121,7 @@ class Renderer {
 Rendered render(const Trace& trace, const RenderOptions& options, const std::function<void(double)>& progress,
                 const std::function<void(const Frame&)>& on_frame) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
-  Renderer renderer(trace, options, rendered);
+  Renderer renderer(trace, trace.commands, options, rendered);
   std::size_t command = 0;
   for (const std::size_t end : frame_ends(trace)) {
     for (; command < end; ++command) {
@@ -123,6 +131,13 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
     if (on_frame) on_frame(rendered.frame);
   }
   return rendered;
+}
+
+Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options) {
+  Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
+  Renderer renderer(trace, commands, options, rendered);
+  for (std::size_t command = 0; command < commands.size(); ++command) renderer.run(command);
+  return std::move(rendered.frame);
 }
 
 }  // namespace splatscope

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "model/command/commands.h"
@@ -46,5 +47,8 @@ struct Rendered {
 Rendered render(const Trace& trace, const RenderOptions& options,
                 const std::function<void(double)>& progress = {},
                 const std::function<void(const Frame&)>& on_frame = {});
+
+// The frame that `commands` leave, on the buffers, textures and programs of `trace`: many views share them.
+Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options);
 
 }  // namespace splatscope

@@ -84,7 +84,9 @@ Json statistics_json(const sim::Result& timing) {
 Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped) {
   return {{"drawn", recorded.surfels},
           {"weights_captured", recorded.weights_captured},
+          {"weights_at_edges", recorded.weights_at_edges},
           {"weights_by_default", recorded.weights_by_default},
+          {"weights_outside_box", recorded.weights_outside_box},
           {"skipped",
            {{"not_finite", skipped.not_finite},
             {"zero_radius", skipped.zero_radius},

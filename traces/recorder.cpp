@@ -17,7 +17,9 @@ Recording record(const Scene& scene, const CapturedWeights& captured) {
     out.trace.commands.emplace_back(NormalizeOnHost{});
   } else {
     out.counts.weights_captured = captured.captured;
-    out.counts.weights_by_default = scene.surfels.size() - captured.captured;
+    out.counts.weights_at_edges = captured.at_edges;
+    out.counts.weights_by_default = captured.unseen;
+    out.counts.weights_outside_box = captured.outside_box;
   }
   return out;
 }
@@ -25,11 +27,12 @@ Recording record(const Scene& scene, const CapturedWeights& captured) {
 Recording record(const Scene& scene, const NumberFormats& formats,
                  const std::function<void(double)>& progress) {
   if (scene.splatting.algorithm != Algorithm::ewa_per_pixel) {
-    return record(scene, capture_weights(scene, formats, progress));
+    return record(scene, capture_weights(scene.surfels, scene.splatting, scene.capture, formats, progress));
   }
   // The sum of the weights must not saturate: gamma keeps it under 1, and the division takes it out again.
-  return record(scene,
-                {std::vector<float>(scene.surfels.size(), static_cast<float>(scene.splatting.gamma)), 0});
+  CapturedWeights equal;
+  equal.weights.resize(scene.surfels.size(), equal_weights(scene.splatting.gamma));
+  return record(scene, equal);
 }
 
 }  // namespace splatscope::traces

@@ -12,9 +12,11 @@ namespace splatscope::traces {
 
 // Host-side facts of a recording that a run reports beside its counters.
 struct RecordCounts {
-  std::size_t surfels = 0;             // drawn
-  std::size_t weights_captured = 0;    // surfels seen from at least one view of the capture
-  std::size_t weights_by_default = 0;  // surfels seen from none: they get the median of the others
+  std::size_t surfels = 0;              // drawn
+  std::size_t weights_captured = 0;     // surfels seen from at least one view of the capture
+  std::size_t weights_at_edges = 0;     // of these: with a weight for each vertex
+  std::size_t weights_by_default = 0;   // surfels seen from none: they get the median of the others
+  std::size_t weights_outside_box = 0;  // surfels that the scene's box leaves unnormalised
 };
 
 struct Recording {

@@ -74,16 +74,16 @@ TEST(Recorder, CapturedWeightsAreTheInverseSums) {
   NumberFormats formats;
   formats.frame = FrameFormat::float32;
   formats.color = ColorFormat::float32;
-  const CapturedWeights captured = capture_weights(scene, formats);
+  const CapturedWeights captured = capture_weights(scene.surfels, scene.splatting, scene.capture, formats);
   EXPECT_EQ(scene.surfels.size(), captured.captured);
   for (std::size_t row = 3; row < 17; ++row) {
     for (std::size_t column = 3; column < 21; ++column) {
-      const float weight = captured.weights[row * 24 + column];
+      const float weight = captured.weights[row * 24 + column][0];
       EXPECT_GT(weight, 0.99 / 1.275);
       EXPECT_LT(weight, 1.01 / 1.041);
     }
   }
-  EXPECT_GT(captured.weights[0], 1.5f);  // a corner has a quarter of the neighbours
+  EXPECT_GT(captured.weights[0][0], 1.5f);  // a corner has a quarter of the neighbours
 }
 
 TEST(Recorder, HostileSurfelsLeaveNoNaN) {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "model/error.h"
+#include "traces/gamma.h"
 #include "traces/ready_scenes.h"
 #include "traces/scene_settings.h"
 #include "traces/surfels.h"
@@ -36,10 +37,12 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   scene.camera = settings.camera;
   scene.frame = {settings.width, settings.height};
   scene.splatting = settings.splatting;
+  scene.capture = settings.capture;
   Surfels surfels = make_surfels(settings, file.parent_path());
   scene.surfels = std::move(surfels.surfels);
   scene.skipped = surfels.skipped;
   scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : surfels.average_spacing;
+  if (!(scene.splatting.gamma > 0)) scene.splatting.gamma = suitable_gamma(scene.surfels, scene.splatting);
   return scene;
 }
 

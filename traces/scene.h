@@ -48,6 +48,16 @@ struct Splatting {
   VertexMemory vertex_memory = VertexMemory::video;
 };
 
+// How the weights of per-surfel normalisation are captured (Ren 2002, section 7.2).
+struct Capture {
+  int views = 0;               // spread evenly over the bounding sphere
+  int frame_size = 0;          // pixels: width and height of each view
+  bool corner_weights = true;  // a surfel at an edge of the model has a weight for each vertex of its quad
+  // Only surfels whose centres lie in this box (object units, faces included) are captured.
+  glm::dvec3 box_min{};
+  glm::dvec3 box_max{};
+};
+
 // Surfels that were left out while loading, by the first reason that held.
 struct SkipCounts {
   std::size_t not_finite = 0;   // a NaN or INF in position, normal, radius or color
@@ -64,6 +74,7 @@ struct Scene {
   Camera camera;
   Frame frame;
   Splatting splatting;
+  Capture capture;
 };
 
 // Reads a scene file (TOML). Each key has a default (scene_keys.h). A surfel file's name is relative to the

@@ -67,8 +67,10 @@ const std::array kKeys = {
     SceneKey{"splatting", "depth_offset", "object units",
              "z_t of the visibility pass (Ren 2002, 5.1); 0: the average spacing of the surfels",
              RealValue{[](S& s) -> double& { return s.depth_offset; }, 0, 0, kFar}},
-    SceneKey{"splatting", "gamma", "", "scale of the weights against saturation (Ren 2002, 7.2)",
-             RealValue{[](S& s) -> double& { return s.splatting.gamma; }, 0.73, 0.01, 1}},
+    SceneKey{
+        "splatting", "gamma", "",
+        "scale of the weights against saturation (Ren 2002, 7.2); 0: 0.73, or less where more splats overlap",
+        RealValue{[](S& s) -> double& { return s.splatting.gamma; }, 0, 0, 1}},
     // 1: V_r = I where the radius h is the unit. On a square grid h is sqrt 2 spacings; the truncated splats
     // then sum to at most 1.37, whose inverse is the paper's gamma = 0.73.
     SceneKey{"splatting", "sigma", "radii", "standard deviation of the reconstruction filter",
@@ -78,6 +80,22 @@ const std::array kKeys = {
     SceneKey{
         "splatting", "vertex_memory", "", "where the vertex buffers lie",
         ChoiceValue{[](S& s, int i) { s.splatting.vertex_memory = VertexMemory(i); }, {"video", "agp"}, 0}},
+
+    SceneKey{"capture", "views", "views",
+             "spread evenly over the bounding sphere, that per-surfel weights are captured from",
+             IntegerValue{[](S& s) -> int& { return s.capture.views; }, 32, 1, 256}},
+    SceneKey{"capture", "frame_size", "pixels", "width and height of each of these views",
+             IntegerValue{[](S& s) -> int& { return s.capture.frame_size; }, 512, 16, 2048}},
+    SceneKey{"capture", "corner_weights", "",
+             "surfels at an edge of the model have a weight for each vertex of their quads",
+             BooleanValue{[](S& s) -> bool& { return s.capture.corner_weights; }, true}},
+    SceneKey{
+        "capture", "box_min", "object units",
+        "only surfels with centres in a box are captured, the others stay as dark as gamma makes them",
+        VectorValue{[](S& s) -> glm::dvec3& { return s.capture.box_min; }, glm::dvec3(-kFar), -kFar, kFar}},
+    SceneKey{
+        "capture", "box_max", "object units", "the box's other corner",
+        VectorValue{[](S& s) -> glm::dvec3& { return s.capture.box_max; }, glm::dvec3(kFar), -kFar, kFar}},
 };
 
 std::string quoted_list(const std::vector<std::string_view>& names) {

@@ -28,6 +28,7 @@ struct SceneSettings {
   Camera camera;
   int width = 0, height = 0;
   Splatting splatting;
+  Capture capture;
   double depth_offset = 0;  // 0: the average spacing
 };
 

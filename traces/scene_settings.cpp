@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "model/error.h"
 
@@ -127,6 +128,12 @@ void check_together(const SceneSettings& settings, const toml::table& root, std:
   if (glm::length(c.up) == 0) throw UserError(file, at, "camera.up is zero, expected a direction");
   if (glm::length(glm::cross(glm::normalize(view), glm::normalize(c.up))) < 1e-9)
     throw UserError(file, at, "camera.up lies along the line of sight, expected another direction");
+  const Capture& capture = settings.capture;
+  if (!glm::all(glm::lessThanEqual(capture.box_min, capture.box_max))) {
+    const toml::table* table = root["capture"].as_table();
+    throw UserError(file, table ? line(*table) : 0,
+                    "capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
+  }
 }
 
 }  // namespace

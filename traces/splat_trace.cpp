@@ -22,7 +22,8 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 56);
 
-constexpr std::uint32_t kCorners = 4;           // of a surfel's quad
+constexpr std::uint32_t kCorners = 4;  // of a surfel's quad
+constexpr float kCornerPlaces[kCorners][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 constexpr std::uint32_t kIndices = 6;           // two triangles
 constexpr std::uint32_t kSurfelsADraw = 16384;  // as many quads as 16-bit indices reach
 
@@ -42,9 +43,8 @@ std::uint8_t color_byte(float value) {
   return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
-Buffer vertex_buffer(std::span<const Surfel> surfels, std::span<const float> weights,
+Buffer vertex_buffer(std::span<const Surfel> surfels, std::span<const VertexWeights> weights,
                      const Splatting& settings) {
-  constexpr float corners[kCorners][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   Buffer buffer;
   buffer.place = settings.vertex_memory == VertexMemory::agp ? MemoryPlace::agp : MemoryPlace::video;
   buffer.bytes.resize(surfels.size() * kCorners * sizeof(Vertex));
@@ -57,11 +57,11 @@ Buffer vertex_buffer(std::span<const Surfel> surfels, std::span<const float> wei
     store(axes.s, vertex.tangent_s);
     store(axes.t, vertex.tangent_t);
     vertex.filter[0] = static_cast<float>(settings.sigma);
-    vertex.filter[1] = weights[k];
     for (int i = 0; i < 3; ++i) vertex.color[i] = color_byte(surfel.color[2 - i]);
     vertex.color[3] = 255;
-    for (const auto& corner : corners) {
-      std::ranges::copy(corner, vertex.corner);
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      std::ranges::copy(kCornerPlaces[i], vertex.corner);
+      vertex.filter[1] = weights[k][i];
       std::memcpy(out, &vertex, sizeof vertex);
       out += sizeof vertex;
     }
@@ -109,6 +109,17 @@ Tangents tangents(const Surfel& surfel) {
   return {double{surfel.radius} * s, double{surfel.radius} * glm::cross(normal, s)};
 }
 
+std::array<glm::dvec3, 4> quad_corners(const Surfel& surfel, const Splatting& settings) {
+  const Tangents axes = tangents(surfel);
+  const double reach = std::sqrt(2 * settings.cutoff) * settings.sigma;
+  std::array<glm::dvec3, 4> corners;
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const glm::dvec2 y = reach * (2.0 * glm::dvec2(kCornerPlaces[i][0], kCornerPlaces[i][1]) - 1.0);
+    corners[i] = glm::dvec3(surfel.position) + y.x * axes.s + y.y * axes.t;
+  }
+  return corners;
+}
+
 Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, const Splatting& settings,
                   const SplatPass& pass) {
   Trace trace;
@@ -147,6 +158,16 @@ Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, co
   draw.state.destination_factor = BlendFactor::one;
   append_draws(draw, surfels.size(), trace);
   return trace;
+}
+
+std::vector<Command> seen_from(const kernels::View& view, const Splatting& settings, const Trace& trace) {
+  std::vector<Command> commands = trace.commands;
+  for (Command& command : commands) {
+    if (auto* draw = std::get_if<Draw>(&command)) {
+      draw->constants = kernels::splat_constants(view, settings.cutoff, settings.depth_offset);
+    }
+  }
+  return commands;
 }
 
 }  // namespace splatscope::traces

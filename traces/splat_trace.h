@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <span>
+#include <vector>
 
 #include "kernels/view.h"
 #include "model/command/commands.h"
@@ -8,10 +10,23 @@
 
 namespace splatscope::traces {
 
+// s_k at the vertices of a surfel's quad, in the order of its corners: (0,0), (1,0), (1,1), (0,1).
+using VertexWeights = std::array<float, 4>;
+
+// One weight for all four.
+constexpr VertexWeights equal_weights(double weight) {
+  const auto w = static_cast<float>(weight);
+  return {w, w, w, w};
+}
+
+// The vertices of the quad that a surfel is splatted with where there is no prefilter, in the same order:
+// o +- sqrt(2c) sigma (s, t) (Ren 2002, Eq. 14 and 12).
+std::array<glm::dvec3, 4> quad_corners(const Surfel& surfel, const Splatting& settings);
+
 // How the second pass splats.
 struct SplatPass {
-  std::span<const float> weights;  // s_k, one a surfel
-  bool prefilter = true;           // EWA; false: the reconstruction filter alone
+  std::span<const VertexWeights> weights;  // of each surfel
+  bool prefilter = true;                   // EWA; false: the reconstruction filter alone
   bool sum_weights = false;  // true: the alpha channel sums the weights; false: it is left to the blend unit
 };
 
@@ -29,5 +44,8 @@ Tangents tangents(const Surfel& surfel);
 // draws.
 Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, const Splatting& settings,
                   const SplatPass& pass);
+
+// The commands of a splat trace as they are for another view of the same size.
+std::vector<Command> seen_from(const kernels::View& view, const Splatting& settings, const Trace& trace);
 
 }  // namespace splatscope::traces

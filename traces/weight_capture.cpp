@@ -1,20 +1,28 @@
 #include "traces/weight_capture.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <mutex>
 #include <numbers>
 
 #include "model/render.h"
-#include "traces/splat_trace.h"
+#include "traces/edges.h"
 
 namespace splatscope::traces {
 namespace {
 
-constexpr int kViews = 16;
-constexpr int kFrameSize = 512;             // pixels, as the paper's frames
-constexpr double kSmallestCosine = 0.5;     // 60 degrees
+constexpr double kSmallestCosine = 0.5;  // 60 degrees
+// The least sum at a vertex, in sums at its surfel's centre: at a straight edge half of the splats are
+// missing. Beyond the edge it falls to 0, and the inverse of that would brighten the little that is seen
+// there.
+constexpr float kLeastCorner = 0.5f;
 constexpr double kCaptureFieldOfView = 45;  // degrees
 
 struct Sphere {
@@ -23,15 +31,16 @@ struct Sphere {
 };
 
 // About the middle of the bounding box, all quads inside.
-Sphere bounding_sphere(const std::vector<Surfel>& surfels) {
+Sphere bounding_sphere(std::span<const Surfel> surfels, const Splatting& splatting) {
   glm::dvec3 low(surfels.front().position), high = low;
   for (const Surfel& surfel : surfels) {
     low = glm::min(low, glm::dvec3(surfel.position));
     high = glm::max(high, glm::dvec3(surfel.position));
   }
+  const double corner = std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff));
   Sphere sphere{0.5 * (low + high), 0};
   for (const Surfel& surfel : surfels) {
-    const double reach = glm::length(glm::dvec3(surfel.position) - sphere.center) + 2.0 * surfel.radius;
+    const double reach = glm::length(glm::dvec3(surfel.position) - sphere.center) + corner * surfel.radius;
     sphere.radius = std::max(sphere.radius, reach);
   }
   return sphere;
@@ -45,80 +54,138 @@ glm::dvec3 direction(int index, int count) {
   return {ring * std::cos(angle), ring * std::sin(angle), z};
 }
 
-Scene looking_from(const Scene& scene, const Sphere& sphere, const glm::dvec3& from) {
-  Scene view;
-  view.camera.fov_y_degrees = kCaptureFieldOfView;
+// Looks at the whole sphere from one side.
+struct CaptureView {
+  glm::dvec3 eye;
+  kernels::View view;
+};
+
+CaptureView looking_from(const Sphere& sphere, const glm::dvec3& from, int frame_size) {
+  Camera camera;
+  camera.fov_y_degrees = kCaptureFieldOfView;
   const double distance = sphere.radius / std::sin(0.5 * kCaptureFieldOfView * std::numbers::pi / 180);
-  view.camera.eye = sphere.center + distance * from;
-  view.camera.target = sphere.center;
-  view.camera.up = std::abs(from.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-  view.camera.near = 0.9 * (distance - sphere.radius);
-  view.camera.far = distance + sphere.radius;
-  view.frame.width = view.frame.height = kFrameSize;
-  view.splatting = scene.splatting;
-  return view;
+  camera.eye = sphere.center + distance * from;
+  camera.target = sphere.center;
+  camera.up = std::abs(from.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+  camera.near = 0.9 * (distance - sphere.radius);
+  camera.far = distance + sphere.radius;
+  return {camera.eye, view_of(camera, {frame_size, frame_size})};
 }
 
-double median(std::vector<float>& values) {
+float median(std::span<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
-// Appends the summed weight at every surfel whose centre this view sees well.
-void sample_view(const std::vector<Surfel>& surfels, const kernels::View& view, const glm::dvec3& eye,
-                 const splatscope::Frame& frame, std::vector<std::vector<float>>& samples) {
-  for (std::size_t k = 0; k < surfels.size(); ++k) {
-    const glm::dvec3 position(surfels[k].position);
-    const double cosine = glm::dot(glm::dvec3(surfels[k].normal), glm::normalize(eye - position));
-    if (std::abs(cosine) < kSmallestCosine) continue;
-    // The view holds the whole bounding sphere: every centre is in front of the near plane and in the frame.
-    const glm::dvec3 camera = view.camera_space(position);
+// What the views show, and what they say about a point of the surface.
+class CapturedViews {
+ public:
+  CapturedViews(std::span<const Surfel> surfels, const Splatting& splatting, const Capture& capture,
+                const NumberFormats& formats, const std::function<void(double)>& progress) {
+    const Sphere sphere = bounding_sphere(surfels, splatting);
+    RenderOptions options;
+    options.formats = formats;
+    options.record_work = false;
+    for (int i = 0; i < capture.views; ++i) {
+      views_.push_back(looking_from(sphere, direction(i, capture.views), capture.frame_size));
+    }
+    frames_.resize(views_.size(), splatscope::Frame(0, 0, formats));
+    const std::vector<VertexWeights> unnormalized(surfels.size(), equal_weights(splatting.gamma));
+    const Trace trace = splat_trace(surfels, views_.front().view, splatting,
+                                    {.weights = unnormalized, .prefilter = false, .sum_weights = true});
+    std::mutex mutex;
+    std::size_t done = 0;
+    tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
+      frames_[i] = render_view(trace, seen_from(views_[i].view, splatting, trace), options);
+      const std::lock_guard lock(mutex);
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(views_.size()));
+    });
+  }
+
+  // The median, over the views that see `point` of a surfel's plane well, of the summed weights there; 0
+  // where none does. `scratch` is for its use.
+  float sum_at(const glm::dvec3& point, const glm::dvec3& normal, std::vector<float>& scratch) const {
+    scratch.clear();
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      const double cosine = glm::dot(normal, glm::normalize(views_[i].eye - point));
+      if (std::abs(cosine) < kSmallestCosine) continue;
+      const float sum = seen_sum(views_[i].view, frames_[i], point);
+      if (sum > 0) scratch.push_back(sum);
+    }
+    return scratch.empty() ? 0 : median(scratch);
+  }
+
+ private:
+  // Read back from the pixel that holds the point; 0 where something hides it.
+  static float seen_sum(const kernels::View& view, const splatscope::Frame& frame, const glm::dvec3& point) {
+    const glm::dvec3 camera = view.camera_space(point);
     const glm::dvec2 window = view.window(camera);
+    // All of the sphere is in the frame; what is not is no number.
+    if (!(window.x >= 0 && window.x < view.width && window.y >= 0 && window.y < view.height)) return 0;
     const std::size_t pixel =
         static_cast<std::size_t>(window.y) * frame.width + static_cast<std::size_t>(window.x);
     const double depth =
         view.far_plane / (view.far_plane - view.near_plane) * (1 - view.near_plane / camera.z);
-    const float sum = frame.color(pixel)[3];
-    if (depth <= frame.depth_value(pixel) && sum > 0) samples[k].push_back(sum);
+    return depth <= frame.depth_value(pixel) ? frame.color(pixel)[3] : 0;
   }
+
+  std::vector<CaptureView> views_;
+  std::vector<splatscope::Frame> frames_;
+};
+
+// The weights at the vertices of a surfel at an edge, where `sum` is that at its centre. A vertex from which
+// nothing of the model is seen, because it lies beyond the edge or something hides it, has the centre's.
+VertexWeights corner_weights(const CapturedViews& views, const Surfel& surfel, float sum,
+                             const Splatting& splatting, std::vector<float>& scratch) {
+  VertexWeights weights = equal_weights(splatting.gamma / sum);
+  const auto corners = quad_corners(surfel, splatting);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const float at_corner = views.sum_at(corners[i], surfel.normal, scratch);
+    if (at_corner > 0) {
+      weights[i] = static_cast<float>(splatting.gamma / std::max(at_corner, kLeastCorner * sum));
+    }
+  }
+  return weights;
 }
 
 }  // namespace
 
-CapturedWeights capture_weights(const Scene& scene, const NumberFormats& formats,
+CapturedWeights capture_weights(std::span<const Surfel> surfels, const Splatting& splatting,
+                                const Capture& capture, const NumberFormats& formats,
                                 const std::function<void(double)>& progress) {
-  const std::vector<Surfel>& surfels = scene.surfels;
   CapturedWeights out;
-  out.weights.resize(surfels.size(), 1.0f);
+  out.weights.resize(surfels.size(), equal_weights(splatting.gamma));
   if (surfels.empty()) return out;
 
-  const auto gamma = static_cast<float>(scene.splatting.gamma);
-  const std::vector<float> unnormalized(surfels.size(), gamma);
-  const Sphere sphere = bounding_sphere(surfels);
-  RenderOptions options;
-  options.formats = formats;
-  options.record_work = false;
-  std::vector<std::vector<float>> samples(surfels.size());
-  for (int i = 0; i < kViews; ++i) {
-    if (progress) progress(static_cast<double>(i) / kViews);
-    const Scene from = looking_from(scene, sphere, direction(i, kViews));
-    const kernels::View view = view_of(from.camera, from.frame);
-    const Trace trace = splat_trace(surfels, view, from.splatting,
-                                    {.weights = unnormalized, .prefilter = false, .sum_weights = true});
-    sample_view(surfels, view, from.camera.eye, render(trace, options).frame, samples);
-  }
+  const CapturedViews views(surfels, splatting, capture, formats, progress);
+  const std::vector<char> edge =
+      capture.corner_weights ? at_edge(surfels) : std::vector<char>(surfels.size());
+  std::vector<float> sums(surfels.size());  // at the centres; 0: seen from no view, < 0: outside of the box
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surfels.size()), [&](const auto& range) {
+    std::vector<float> scratch;
+    for (std::size_t k = range.begin(); k != range.end(); ++k) {
+      const glm::dvec3 position(surfels[k].position);
+      const bool inside = glm::all(glm::lessThanEqual(capture.box_min, position)) &&
+                          glm::all(glm::lessThanEqual(position, capture.box_max));
+      sums[k] = inside ? views.sum_at(position, surfels[k].normal, scratch) : -1;
+      if (!(sums[k] > 0)) continue;
+      out.weights[k] = edge[k] ? corner_weights(views, surfels[k], sums[k], splatting, scratch)
+                               : equal_weights(splatting.gamma / sums[k]);
+    }
+  });
 
-  std::vector<float> sums;  // of the surfels that were seen
+  std::vector<float> seen;
   for (std::size_t k = 0; k < surfels.size(); ++k) {
-    if (samples[k].empty()) continue;
-    ++out.captured;
-    sums.push_back(static_cast<float>(median(samples[k])));
-    out.weights[k] = gamma / sums.back();
+    if (sums[k] > 0) seen.push_back(sums[k]);
+    out.unseen += sums[k] == 0;
+    out.outside_box += sums[k] < 0;
+    out.at_edges += sums[k] > 0 && edge[k];
   }
-  const float fallback = sums.empty() ? 1.0f : gamma / static_cast<float>(median(sums));
+  out.captured = seen.size();
+  const VertexWeights fallback = equal_weights(seen.empty() ? 1 : splatting.gamma / median(seen));
   for (std::size_t k = 0; k < surfels.size(); ++k) {
-    if (samples[k].empty()) out.weights[k] = fallback;
+    if (sums[k] == 0) out.weights[k] = fallback;
   }
   return out;
 }

@@ -1,0 +1,54 @@
+#include "traces/gamma.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <vector>
+
+#include "traces/neighbour_search.h"
+#include "traces/splat_trace.h"
+
+namespace splatscope::traces {
+namespace {
+
+constexpr std::size_t kAsked = 10000;    // surfels
+constexpr std::size_t kNeighbours = 64;  // whose splats may reach a surfel
+// The largest sum between the surfels of a square grid is 1.37, the largest at them 1.275.
+constexpr double kBetween = 1.07;
+constexpr double kShare = 0.99;  // of the surfels whose sums do not saturate
+
+// r_j of Ren 2002, Eq. 1, at a point: in the plane of surfel j, in units of its radius.
+double filter_at(const Surfel& surfel, const Splatting& splatting, const glm::dvec3& point) {
+  const glm::dvec3 to = point - glm::dvec3(surfel.position);
+  const auto [s, t] = tangents(surfel);  // of length h
+  const double scale = 1 / (splatting.sigma * double{surfel.radius} * double{surfel.radius});
+  const double y0 = glm::dot(to, s) * scale, y1 = glm::dot(to, t) * scale;
+  const double squared = y0 * y0 + y1 * y1;
+  const double cut = splatting.circular_cutoff ? squared : std::max(y0 * y0, y1 * y1);
+  if (cut > 2 * splatting.cutoff) return 0;
+  return 0.5 * std::numbers::inv_pi / (splatting.sigma * splatting.sigma) * std::exp(-0.5 * squared);
+}
+
+}  // namespace
+
+double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splatting) {
+  if (surfels.empty()) return kPaperGamma;
+  const NeighbourSearch search(surfels);
+  NeighbourSearch::Found near;
+  std::vector<double> sums;
+  for (std::size_t k = 0; k < surfels.size(); k += surfels.size() / kAsked + 1) {
+    search.find(k, kNeighbours, near);
+    double sum = 0;
+    for (const std::uint32_t j : near.index) {
+      if (glm::dot(surfels[j].normal, surfels[k].normal) <= 0) continue;
+      sum += filter_at(surfels[j], splatting, surfels[k].position);
+    }
+    sums.push_back(sum);
+  }
+  const auto high = sums.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sums.size() - 1));
+  std::ranges::nth_element(sums, high);
+  return std::min(kPaperGamma, 1 / (kBetween * *high));
+}
+
+}  // namespace splatscope::traces

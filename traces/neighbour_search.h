@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <nanoflann.hpp>
+#include <span>
+#include <vector>
+
+#include "traces/scene.h"
+
+namespace splatscope::traces {
+
+// Finds the surfels nearest to a surfel. The surfels must outlive it; their positions must be finite. Several
+// threads may search at once, each with a `Found` of its own.
+class NeighbourSearch {
+ public:
+  struct Found {
+    std::vector<std::uint32_t> index;      // nearest first
+    std::vector<double> squared_distance;  // in double: squares of float coordinates overflow
+    std::size_t size() const { return index.size(); }
+    double distance(std::size_t i) const { return std::sqrt(squared_distance[i]); }
+  };
+
+  explicit NeighbourSearch(std::span<const Surfel> surfels) : positions_{surfels}, tree_(3, positions_) {}
+
+  // The `count` surfels nearest to number i, itself among them; fewer where there are fewer.
+  void find(std::size_t i, std::size_t count, Found& found) const {
+    found.index.resize(count);
+    found.squared_distance.resize(count);
+    const glm::vec3& p = positions_.surfels[i].position;
+    const float query[] = {p.x, p.y, p.z};
+    const std::size_t size = tree_.knnSearch(query, count, found.index.data(), found.squared_distance.data());
+    found.index.resize(size);
+    found.squared_distance.resize(size);
+  }
+
+ private:
+  // nanoflann's view of the surfels; its names are the library's.
+  struct Positions {
+    std::span<const Surfel> surfels;
+    std::size_t kdtree_get_point_count() const { return surfels.size(); }
+    float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      return surfels[i].position[static_cast<glm::length_t>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Positions, double>,
+                                                   Positions, 3>;
+  Positions positions_;
+  Tree tree_;
+};
+
+}  // namespace splatscope::traces

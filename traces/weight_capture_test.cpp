@@ -1,0 +1,238 @@
+#include "traces/weight_capture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <random>
+
+#include "traces/edges.h"
+#include "traces/gamma.h"
+#include "traces/neighbours.h"
+
+namespace splatscope::traces {
+namespace {
+
+Splatting splatting_of(std::span<const Surfel> surfels) {
+  Splatting splatting;
+  splatting.cutoff = 1;
+  splatting.sigma = 1;
+  splatting.circular_cutoff = true;
+  splatting.depth_offset = average_spacing(surfels);
+  splatting.gamma = suitable_gamma(surfels, splatting);
+  return splatting;
+}
+
+Capture capture_of(int views, int frame_size) {
+  Capture capture;
+  capture.views = views;
+  capture.frame_size = frame_size;
+  capture.box_min = glm::dvec3(-1e30);
+  capture.box_max = glm::dvec3(1e30);
+  return capture;
+}
+
+// A square of `edge` x `edge` units in the plane y = 0, a surfel at random in each unit cell.
+std::vector<Surfel> jittered_square(int edge, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> any(0.1, 0.9);
+  std::vector<Surfel> surfels;
+  for (int row = 0; row < edge; ++row) {
+    for (int column = 0; column < edge; ++column) {
+      Surfel surfel;
+      surfel.position = glm::vec3(column - 0.5 * edge + any(random), 0, row - 0.5 * edge + any(random));
+      surfel.normal = {0, 1, 0};
+      surfels.push_back(surfel);
+    }
+  }
+  estimate_radii(surfels, 8);
+  return surfels;
+}
+
+// A sphere of radius 1; `inside` adds one of half the radius, which the outer one hides from every side.
+std::vector<Surfel> sphere(int count, double radius) {
+  std::vector<Surfel> surfels;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, ring = std::sqrt(1 - z * z);
+    const double angle = 2 * std::numbers::pi * i / std::numbers::phi;
+    Surfel surfel;
+    surfel.normal = glm::vec3(ring * std::cos(angle), ring * std::sin(angle), z);
+    surfel.position = surfel.normal * static_cast<float>(radius);
+    surfels.push_back(surfel);
+  }
+  estimate_radii(surfels, 8);
+  return surfels;
+}
+
+// Sum of the reconstruction filters at a point of the plane y = 0, over all surfels (Ren 2002, 7.1).
+double exact_sum(std::span<const Surfel> surfels, const glm::dvec3& point) {
+  double sum = 0;
+  for (const Surfel& surfel : surfels) {
+    const double distance = glm::length(point - glm::dvec3(surfel.position)) / surfel.radius;
+    if (distance * distance <= 2) sum += 0.5 * std::numbers::inv_pi * std::exp(-0.5 * distance * distance);
+  }
+  return sum;
+}
+
+NumberFormats float_formats() {
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  formats.color = ColorFormat::float32;
+  return formats;
+}
+
+bool in_the_middle(const Surfel& surfel, double edge) {
+  return std::abs(surfel.position.x) < edge && std::abs(surfel.position.z) < edge;
+}
+
+// Weights come from one pixel a view, up to half a pixel away from the centre, with the splats that pass
+// through it: the median of the views is near the exact sum, and the mean over the surfels much nearer.
+TEST(WeightCapture, WeightsAreTheInversesOfExactSums) {
+  for (const unsigned seed : {1u, 2u}) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::vector<Surfel> surfels = jittered_square(32, seed);
+    for (const bool eight_bits : {false, true}) {
+      const CapturedWeights captured = capture_weights(surfels, splatting_of(surfels), capture_of(16, 512),
+                                                       eight_bits ? NumberFormats{} : float_formats());
+      ASSERT_EQ(surfels.size(), captured.captured);
+      double sum = 0, largest = 0;
+      int count = 0;
+      for (std::size_t k = 0; k < surfels.size(); ++k) {
+        if (!in_the_middle(surfels[k], 12)) continue;
+        const double product = captured.weights[k][0] * exact_sum(surfels, surfels[k].position);
+        largest = std::max(largest, std::abs(product - 1));
+        sum += product - 1;
+        ++count;
+        for (const float weight : captured.weights[k]) EXPECT_EQ(captured.weights[k][0], weight);
+      }
+      EXPECT_LT(std::abs(sum / count), eight_bits ? 0.03 : 0.01);
+      EXPECT_LT(largest, 0.12) << "8 bits: " << eight_bits;
+    }
+  }
+}
+
+TEST(WeightCapture, SurfelsAtEdgesHaveAWeightForEachVertex) {
+  const std::vector<Surfel> surfels = jittered_square(24, 4);
+  Capture capture = capture_of(8, 256);
+  const CapturedWeights corners = capture_weights(surfels, splatting_of(surfels), capture, float_formats());
+  const std::vector<char> edge = at_edge(surfels);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(edge, 1)), corners.at_edges);
+  capture.corner_weights = false;
+  const CapturedWeights centres = capture_weights(surfels, splatting_of(surfels), capture, float_formats());
+  EXPECT_EQ(0u, centres.at_edges);
+  std::size_t different = 0;
+  for (std::size_t k = 0; k < surfels.size(); ++k) {
+    const auto [low, high] = std::ranges::minmax(corners.weights[k]);
+    different += low != high;
+    EXPECT_TRUE(edge[k] || low == high);
+    EXPECT_LE(high, 2.001f * centres.weights[k][0]) << "half of the sum at the centre is the least";
+  }
+  EXPECT_GT(different, corners.at_edges * 9 / 10);
+}
+
+TEST(WeightCapture, UnseenSurfelsHaveTheMedianAndAreCounted) {
+  std::vector<Surfel> surfels = sphere(1500, 1);
+  const std::vector<Surfel> inside = sphere(200, 0.5);
+  surfels.insert(surfels.end(), inside.begin(), inside.end());
+  const CapturedWeights captured =
+      capture_weights(surfels, splatting_of(surfels), capture_of(12, 256), NumberFormats{});
+  EXPECT_EQ(200u, captured.unseen);
+  EXPECT_EQ(1500u, captured.captured);
+  EXPECT_EQ(0u, captured.outside_box);
+  std::vector<float> weights;
+  for (std::size_t k = 0; k < 1500; ++k) weights.push_back(captured.weights[k][0]);
+  std::ranges::sort(weights);
+  for (std::size_t k = 1500; k < surfels.size(); ++k) {
+    EXPECT_NEAR(weights[750], captured.weights[k][0], 0.01 * weights[750]);
+  }
+}
+
+TEST(WeightCapture, OutsideOfTheBoxNothingIsNormalized) {
+  const std::vector<Surfel> surfels = jittered_square(16, 5);
+  const Splatting splatting = splatting_of(surfels);
+  Capture capture = capture_of(8, 256);
+  const CapturedWeights all = capture_weights(surfels, splatting, capture, NumberFormats{});
+  capture.box_min.x = -3;
+  capture.box_max.z = 2;
+  const CapturedWeights boxed = capture_weights(surfels, splatting, capture, NumberFormats{});
+  std::size_t outside = 0;
+  for (std::size_t k = 0; k < surfels.size(); ++k) {
+    const bool in = surfels[k].position.x >= -3 && surfels[k].position.z <= 2;
+    outside += !in;
+    EXPECT_EQ(in ? all.weights[k] : equal_weights(splatting.gamma), boxed.weights[k]) << k;
+  }
+  EXPECT_EQ(outside, boxed.outside_box);
+  EXPECT_EQ(surfels.size(), boxed.outside_box + boxed.captured);
+}
+
+TEST(WeightCapture, HostileSurfelsGetAWeight) {
+  std::vector<Surfel> surfels = jittered_square(8, 6);
+  EXPECT_TRUE(capture_weights({}, splatting_of(surfels), capture_of(4, 64), NumberFormats{}).weights.empty());
+  const Splatting splatting = splatting_of(surfels);
+  surfels[3].position = glm::vec3(3e38f, -3e38f, 3e38f);
+  surfels[5].radius = 1e38f;
+  for (const VertexWeights& weights :
+       capture_weights(surfels, splatting, capture_of(4, 64), NumberFormats{}).weights) {
+    for (const float weight : weights) EXPECT_TRUE(std::isfinite(weight) && weight > 0);
+  }
+}
+
+TEST(Edges, OfASquareButNotOfASphere) {
+  const std::vector<Surfel> round = sphere(2000, 1);
+  EXPECT_EQ(0, std::ranges::count(at_edge(round), 1));
+
+  const std::vector<Surfel> square = jittered_square(32, 7);
+  const std::vector<char> edge = at_edge(square);
+  std::size_t inside = 0, inside_found = 0, border = 0, border_found = 0;
+  for (std::size_t k = 0; k < square.size(); ++k) {
+    const bool in = in_the_middle(square[k], 14);  // two rows or more away from the edge
+    const bool at = !in_the_middle(square[k], 15.5);
+    inside += in;
+    inside_found += in && edge[k];
+    border += at;
+    border_found += at && edge[k];
+  }
+  EXPECT_LT(inside_found, inside / 100);
+  EXPECT_GT(border_found, border * 9 / 10);
+}
+
+// Both sides of a plate nearer to each other than its surfels: its rim is an edge all the same.
+TEST(Edges, OfAThinPlate) {
+  std::vector<Surfel> plate = jittered_square(16, 8);
+  const std::size_t one_side = plate.size();
+  for (std::size_t k = 0; k < one_side; ++k) {
+    Surfel below = plate[k];
+    below.position.y -= 0.1f;
+    below.normal = -below.normal;
+    plate.push_back(below);
+  }
+  const std::vector<char> edge = at_edge(plate);
+  for (std::size_t k = 0; k < one_side; ++k) {
+    EXPECT_FALSE(edge[k] && in_the_middle(plate[k], 5)) << k;
+    EXPECT_TRUE(edge[k] || in_the_middle(plate[k], 7.8)) << k;
+  }
+}
+
+TEST(Gamma, IsThePapersForASquareGridAndLessWhereMoreSplatsOverlap) {
+  Scene plane = parse_scene("", "plane.toml");
+  EXPECT_EQ(kPaperGamma, plane.splatting.gamma);
+  EXPECT_EQ(0.5, parse_scene("[splatting]\ngamma = 0.5\n", "plane.toml").splatting.gamma);
+  EXPECT_EQ(kPaperGamma, suitable_gamma({}, plane.splatting));
+
+  const std::vector<Surfel> surfels = jittered_square(32, 9);
+  const double gamma = suitable_gamma(surfels, plane.splatting);
+  std::size_t inside = 0, saturated = 0;
+  for (const Surfel& surfel : surfels) {
+    if (!in_the_middle(surfel, 14)) continue;
+    ++inside;
+    saturated += gamma * exact_sum(surfels, surfel.position) > 1;
+  }
+  EXPECT_LT(gamma, 0.6);
+  EXPECT_LE(saturated, inside / 50);
+  EXPECT_GT(saturated, 0u) << "and not darker than it must be";
+}
+
+}  // namespace
+}  // namespace splatscope::traces
