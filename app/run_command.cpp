@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "studies/reference_comparison.h"
 #include "studies/run.h"
 #include "traces/output_files.h"
 
@@ -17,6 +18,7 @@ struct Options {
   std::string fidelity = "cycle";
   std::vector<std::string> settings;
   std::string out = "out";
+  std::optional<std::string> reference;
 };
 
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
@@ -40,23 +42,36 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
     std::cout << fmt::format("  left out: {}: {}\n", unit.name, unit.why);
 }
 
+void print(const studies::Comparison& c) {
+  std::cout << fmt::format(
+      "  against the reference: PSNR {:.1f} dB over {} pixels, at worst {:.0f}/255, {} of {} pixels inside "
+      "the "
+      "silhouette are holes\n",
+      c.psnr, c.surface_pixels, c.worst, c.holes, c.inside_pixels);
+}
+
 void run(const Options& options, bool quiet) {
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
+  std::optional<kernels::ScreenMap> map;
+  if (options.reference) map = studies::screen_map_by_name(*options.reference);
   auto opened = studies::open_input(options.input);
   traces::prepare_output_folder(options.out);
+  std::optional<kernels::ScreenSpacePicture> reference;
+  if (map) reference = studies::screen_space_reference(studies::scene_of(opened, options.input), *map);
   ProgressBar recording("recording", quiet);
   const studies::Input input =
       studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
   ProgressBar running("running", quiet);
-  const studies::FrameRun result =
-      studies::run_frame(input.trace, machine, fidelity, running.callback(),
-                         studies::earlier_frames_writer(input.trace, options.out));
+  studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback(),
+                                                studies::earlier_frames_writer(input.trace, options.out));
   running.clear();
+  result.reference = std::move(reference);
   studies::write_run(input, machine, fidelity, result, options.out);
   print(input, machine, result);
+  if (result.reference) print(studies::compare(result.rendered.frame, *result.reference));
   std::cout << fmt::format("  frame.png, frame.exr, depth.exr and results.json in {}\n", options.out);
 }
 
@@ -75,6 +90,12 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
                    "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
       ->allow_extra_args(false);
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  command
+      ->add_option("--reference", options->reference,
+                   "also draw the scene in double precision and compare the frame with it: affine (the "
+                   "screen-space filter, Ren 2002, Eq. 5) or perspective (the exact map)")
+      ->expected(0, 1)
+      ->default_str("affine");
   command->footer(
       "Example: splatscope run checkerboard-ewa-per-surfel --set vertex.units=4 --out out/four-units");
   command->callback([options, &invocation] { run(*options, invocation.quiet); });

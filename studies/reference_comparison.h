@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 
 #include "kernels/reference/ewa_reference.h"
+#include "kernels/reference/screen_space.h"
 #include "model/output/frame.h"
+#include "studies/image_io.h"
 #include "traces/scene.h"
 
 // A simulated picture against the double-precision reference of the same scene.
@@ -16,13 +19,45 @@ struct Leave {
   bool eight_bit_texels = false;  // the value of a splat is that of an 8-bit texel, not the Gaussian's
 };
 
-// The reference of a scene: with the EWA prefilter whatever its algorithm, normalised per pixel.
+// The scene's surfels as the references take them: s_k is gamma for each.
+std::vector<kernels::Surfel> reference_surfels(const traces::Scene& scene);
+
+// The reference of a scene that shows a single surface: with the EWA prefilter whatever its algorithm,
+// normalised per pixel.
 kernels::ReferencePicture scene_reference(const traces::Scene& scene, const Leave& leave = {});
+
+// "affine" or "perspective". Throws UserError (file "--reference") for another name.
+kernels::ScreenMap screen_map_by_name(std::string_view name);
+
+// The reference of any scene: visibility by the model of Ren 2002, section 5.1, with the scene's z_t, and the
+// EWA prefilter whatever its algorithm.
+kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene,
+                                                   kernels::ScreenMap map = kernels::ScreenMap::affine);
 
 // Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the
 // summed weights are at least half of what they are in its inside. Splats reach further, but there is no
-// surface there, and only the normalisation per pixel makes it look as if there were.
-double psnr(const Frame& frame, const kernels::ReferencePicture& reference);
+// surface there, and only the normalisation per pixel makes it look as if there were. Infinite where the
+// frame is exact, NaN where the surface covers nothing.
+double psnr(const Frame& frame, const kernels::SplatSums& reference);
+
+// How a frame differs from the reference, over the pixels that the surface covers as for psnr.
+struct Comparison {
+  std::size_t surface_pixels = 0;
+  double psnr = 0;         // dB
+  double worst = 0;        // largest difference of a channel, in 1/255
+  std::size_t over_8 = 0;  // pixels with a channel that is more than 8/255 off
+  // Pixels inside the silhouette that the frame left black and without weight: their rays and those of the
+  // eight pixels about them meet an opaque quad of the reference.
+  std::size_t inside_pixels = 0;
+  std::size_t holes = 0;
+};
+Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference);
+
+// The reference as a picture, normalised per pixel.
+Image picture_of(const kernels::SplatSums& reference);
+
+// Mid-grey where the frame agrees with the reference; 16 times their difference about it.
+Image difference_picture(const Frame& frame, const kernels::SplatSums& reference);
 
 struct Agreement {
   std::size_t pixels = 0;     // with splats that certainly count

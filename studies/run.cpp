@@ -6,6 +6,7 @@
 
 #include "model/error.h"
 #include "model/isa/program.h"
+#include "studies/reference_comparison.h"
 #include "traces/output_files.h"
 #include "traces/trace_file.h"
 
@@ -81,6 +82,13 @@ Json statistics_json(const sim::Result& timing) {
   return out;
 }
 
+// A figure that no file can hold, an infinite PSNR, is null.
+Json reference_json(const Frame& frame, const kernels::ScreenSpacePicture& reference) {
+  const Comparison c = compare(frame, reference);
+  return {{"psnr_decibels", c.psnr},   {"surface_pixels", c.surface_pixels}, {"worst", c.worst},
+          {"pixels_over_8", c.over_8}, {"inside_pixels", c.inside_pixels},   {"holes", c.holes}};
+}
+
 Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped) {
   return {{"drawn", recorded.surfels},
           {"weights_captured", recorded.weights_captured},
@@ -116,6 +124,12 @@ std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace)
   return traces::load_scene(scene_or_trace);
 }
 
+const traces::Scene& scene_of(const std::variant<Trace, traces::Scene>& opened, const std::string& name) {
+  const auto* scene = std::get_if<traces::Scene>(&opened);
+  if (!scene) throw UserError(name, 0, "a trace has no surfels to draw a reference of, expected a scene");
+  return *scene;
+}
+
 Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& name, const Machine& machine,
                  const Progress& progress) {
   if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}};
@@ -135,7 +149,8 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   FrameRun run{render(trace, options, part(progress, 0, options.record_work ? kFunctionShare : 1), on_frame),
                {},
                0,
-               0};
+               0,
+               {}};
   if (options.record_work) {
     const auto timing_start = std::chrono::steady_clock::now();
     const auto scheduler =
@@ -189,6 +204,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   results["counters"] = counters_json(run.rendered.counters);
   if (run.timing) results["statistics"] = statistics_json(*run.timing);
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);
+  if (run.reference) results["reference"] = reference_json(run.rendered.frame, *run.reference);
   results["host"] = {{"seconds", run.host_seconds}};
   if (run.timing) {
     results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.timing_seconds;
@@ -209,6 +225,12 @@ void write_run(const Input& input, const Machine& machine, Fidelity fidelity, co
   write_exr(picture, folder / "frame.exr");
   write_png(picture, folder / "frame.png");
   write_exr(depth_of(run.rendered.frame), folder / "depth.exr");
+  if (run.reference) {
+    const Image reference = picture_of(*run.reference);
+    write_exr(reference, folder / "reference.exr");
+    write_png(reference, folder / "reference.png");
+    write_png(difference_picture(run.rendered.frame, *run.reference), folder / "difference.png");
+  }
   traces::write_file(folder / "results.json", results_of(input, machine, fidelity, run).dump(1) + "\n");
 }
 

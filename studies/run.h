@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "kernels/reference/screen_space.h"
 #include "model/machine/machine.h"
 #include "model/render.h"
 #include "sim/simulate.h"
@@ -36,6 +37,10 @@ struct Input {
 // A trace file (".trace"), a scene file, or a ready scene by its name: read and checked.
 std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace);
 
+// The scene that was opened. Throws UserError for a trace, which knows no surfels: a reference has nothing to
+// draw.
+const traces::Scene& scene_of(const std::variant<Trace, traces::Scene>& opened, const std::string& name);
+
 // A scene is recorded for `machine`, whose number formats the captured weights depend on. `name` is a
 // trace's.
 Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& name, const Machine& machine,
@@ -43,9 +48,10 @@ Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& n
 
 struct FrameRun {
   Rendered rendered;
-  std::optional<sim::Result> timing;  // absent: functional
-  double host_seconds = 0;            // function and timing
-  double timing_seconds = 0;          // of these, for the timing
+  std::optional<sim::Result> timing;                     // absent: functional
+  double host_seconds = 0;                               // function and timing
+  double timing_seconds = 0;                             // of these, for the timing
+  std::optional<kernels::ScreenSpacePicture> reference;  // what the frame should be, where it is asked for
 };
 
 // The records of work are dropped once they are simulated.
@@ -64,7 +70,9 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
 // exists.
 OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder);
 
-// Writes frame.exr, frame.png and depth.exr of the last frame and results.json into `folder`, which exists.
+// Writes frame.exr, frame.png and depth.exr of the last frame and results.json into `folder`, which exists;
+// where the run has a reference also reference.exr, reference.png and difference.png, and into the results
+// how far the last frame is from it.
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder);
 

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
+
+#include "kernels/reference/ray_plane.h"
 
 namespace splatscope::kernels {
 namespace {
@@ -17,46 +16,6 @@ struct OpenWeight {
   std::size_t pixel = 0;
   double weight = 0;
   glm::dvec3 color{};
-};
-
-struct PixelBox {
-  int left, top, right, bottom;  // right and bottom excluded
-};
-
-// Pixels whose centres may lie in the picture of the parallelogram o +- a +- b (camera space), cut at the
-// near plane.
-PixelBox bounding_box(const View& view, const glm::dvec3& o, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 corners[4] = {o - a - b, o + a - b, o + a + b, o - a + b};
-  glm::dvec2 low(std::numeric_limits<double>::infinity());
-  glm::dvec2 high(-std::numeric_limits<double>::infinity());
-  const auto add = [&](const glm::dvec3& p) {
-    const glm::dvec2 window = view.window(p);
-    low = glm::min(low, window);
-    high = glm::max(high, window);
-  };
-  for (int i = 0; i < 4; ++i) {
-    const glm::dvec3& p = corners[i];
-    const glm::dvec3& next = corners[(i + 1) % 4];
-    const double before = p.z - view.near_plane;
-    const double after = next.z - view.near_plane;
-    if (before >= 0) add(p);
-    if ((before < 0) != (after < 0)) add(p + (next - p) * (before / (before - after)));
-  }
-  const auto pixel = [](double coordinate, int size) {
-    return static_cast<int>(std::clamp(std::floor(coordinate), 0.0, static_cast<double>(size)));
-  };
-  return {pixel(low.x, view.width), pixel(low.y, view.height), pixel(high.x + 1, view.width),
-          pixel(high.y + 1, view.height)};
-}
-
-// Linear in the window coordinates: dot(normal, ray), where ray is the pixel's direction with z = 1.
-struct RayFunction {
-  double at_origin = 0, by_x = 0, by_y = 0;
-  RayFunction(const View& view, const glm::dvec3& normal)
-      : at_origin(normal.z - normal.x * view.center().x / view.eta + normal.y * view.center().y / view.eta),
-        by_x(normal.x / view.eta),
-        by_y(-normal.y / view.eta) {}
-  double operator()(double x, double y) const { return at_origin + by_x * x + by_y * y; }
 };
 
 class Accumulator {
@@ -80,23 +39,15 @@ class Accumulator {
     const glm::dvec3 t = view_.camera_direction(surfel.tangent_t);
     const glm::dvec3 a = filter->axes[0][0] * s + filter->axes[0][1] * t;  // p_c = o + y0 a + y1 b
     const glm::dvec3 b = filter->axes[1][0] * s + filter->axes[1][1] * t;
-    // The ray d z meets the plane where o + y0 a + y1 b = d z: Cramer's rule.
-    const glm::dvec3 normal = glm::cross(a, b);
-    const RayFunction denominator(view_, normal);
-    const RayFunction numerator0(view_, glm::cross(b, o));
-    const RayFunction numerator1(view_, glm::cross(o, a));
-    const double plane = glm::dot(o, normal);
+    const RayPlane plane(view_, o, a, b);
     const double reach = filter_reach(settings_);
     const PixelBox box = bounding_box(view_, o, reach * a, reach * b);
     const double height = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter->determinant);
     for (int row = box.top; row < box.bottom; ++row) {
       for (int column = box.left; column < box.right; ++column) {
-        const double x = column + 0.5;
-        const double y = row + 0.5;
-        const double scale = 1.0 / denominator(x, y);
-        const double z = plane * scale;
-        if (!(z >= view_.near_plane && z <= view_.far_plane)) continue;
-        add_at(row, column, {numerator0(x, y) * scale, numerator1(x, y) * scale}, height, surfel.color);
+        const RayHit hit = plane(column + 0.5, row + 0.5);
+        if (!(hit.z >= view_.near_plane && hit.z <= view_.far_plane)) continue;
+        add_at(row, column, hit.y, height, surfel.color);
       }
     }
   }
@@ -150,19 +101,14 @@ void bound_pixel(std::span<const OpenWeight> open, const glm::dvec4& certain, gl
   }
 }
 
-// Colour of a pixel from its sums; 0 where nothing counts.
-glm::dvec3 mean(const glm::dvec4& sums) {
-  return sums.w > 0 ? glm::dvec3(sums) / sums.w : glm::dvec3(0.0);
-}
-
 ReferencePicture Accumulator::finish() {
   const std::size_t pixels = picture_.sums.size();
   picture_.normalized.resize(pixels);
   picture_.lowest.resize(pixels);
   picture_.coverage.resize(pixels, Coverage::none);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    picture_.normalized[pixel] = mean(picture_.sums[pixel]);
-    picture_.lowest[pixel] = mean(certain_[pixel]);
+    picture_.normalized[pixel] = normalized_color(picture_.sums[pixel]);
+    picture_.lowest[pixel] = normalized_color(certain_[pixel]);
     if (certain_[pixel].w > 0) picture_.coverage[pixel] = Coverage::certain;
   }
   picture_.highest = picture_.lowest;

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 #include <span>
 #include <vector>
 
 #include "kernels/reference/filter_value.h"
+#include "kernels/reference/splat_sums.h"
 #include "kernels/reference/surfel_filter.h"
 #include "kernels/view.h"
 
@@ -16,12 +16,8 @@ namespace splatscope::kernels {
 
 enum class Coverage : std::uint8_t { none, uncertain, certain };  // uncertain: only by splats that may be 0
 
-// Of every pixel, at its centre, rows from the top.
-struct ReferencePicture {
-  int width = 0;
-  int height = 0;
-  std::vector<glm::dvec4> sums;  // sum of s_k w_k G(m^-1(x) - u_k), and in w of s_k G: no tolerance applied
-  std::vector<glm::dvec3> normalized;  // sums divided by their w; 0 where nothing counts
+// No tolerance is applied to the sums.
+struct ReferencePicture : SplatSums {
   // Exact bounds, each channel by itself, of the normalised picture over every choice of the splats' values
   // in their ranges (filter_range), where at least one splat counts; 0 where none can.
   std::vector<glm::dvec3> lowest;

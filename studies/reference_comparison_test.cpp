@@ -1,0 +1,80 @@
+#include "studies/reference_comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "model/error.h"
+
+namespace splatscope::studies {
+namespace {
+
+// 6 x 6 pixels, of which the inner 5 x 5 from (1, 1) on are a grey surface of weight 0.8 and depth 2; weight
+// 0.1, under half of that, along the left edge.
+kernels::ScreenSpacePicture grey_square() {
+  kernels::ScreenSpacePicture picture;
+  picture.width = picture.height = 6;
+  picture.sums.resize(36);
+  picture.normalized.resize(36);
+  picture.depth.resize(36, std::numeric_limits<double>::infinity());
+  for (std::size_t y = 1; y < 6; ++y) {
+    for (std::size_t x = 0; x < 6; ++x) {
+      const double weight = x == 0 ? 0.1 : 0.8;
+      picture.sums[6 * y + x] = {0.5 * weight, 0.5 * weight, 0.5 * weight, weight};
+      picture.normalized[6 * y + x] = glm::dvec3(0.5);
+      if (x > 0) picture.depth[6 * y + x] = 2;
+    }
+  }
+  return picture;
+}
+
+Frame grey_frame() {
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  Frame frame(6, 6, formats);
+  for (Vec4& color : frame.colors32) color = {0.5f, 0.5f, 0.5f, 1};
+  return frame;
+}
+
+TEST(ReferenceComparison, an_exact_frame_is_infinitely_near) {
+  const Comparison c = compare(grey_frame(), grey_square());
+  EXPECT_EQ(c.surface_pixels, 25u);
+  EXPECT_EQ(c.inside_pixels, 9u);  // of the 5 x 5, those whose neighbours meet a quad and lie in the picture
+  EXPECT_EQ(c.holes, 0u);
+  EXPECT_EQ(c.psnr, INFINITY);
+  EXPECT_EQ(c.worst, 0.0);
+}
+
+TEST(ReferenceComparison, counts_holes_and_differences_on_the_surface_alone) {
+  Frame frame = grey_frame();
+  frame.colors32[6 * 3 + 3] = {0, 0, 0, 0};     // a hole
+  frame.colors32[6 * 2 + 2] = {0, 0, 0, 0.5f};  // black, but something was drawn
+  frame.colors32[6 * 5 + 5] = {0, 0, 0, 0};     // on the silhouette
+  frame.colors32[6 * 3 + 0] = {1, 1, 1, 1};     // beyond the surface
+  const Comparison c = compare(frame, grey_square());
+  EXPECT_EQ(c.holes, 1u);
+  EXPECT_EQ(c.over_8, 3u);
+  EXPECT_NEAR(c.worst, 127.5, 1e-9);
+  EXPECT_NEAR(c.psnr, -10 * std::log10(3 * 0.25 / 25), 1e-9);
+}
+
+TEST(ReferenceComparison, maps_have_names) {
+  EXPECT_EQ(screen_map_by_name("affine"), kernels::ScreenMap::affine);
+  EXPECT_EQ(screen_map_by_name("perspective"), kernels::ScreenMap::perspective);
+  EXPECT_THROW(screen_map_by_name("exact"), UserError);
+}
+
+TEST(ReferenceComparison, difference_picture_is_grey_where_they_agree) {
+  Frame frame = grey_frame();
+  frame.colors32[0] = {0, 0, 0, 0};
+  frame.colors32[7] = {0.51f, 0.5f, 0.4f, 1};
+  const Image image = difference_picture(frame, grey_square());
+  EXPECT_EQ(image.pixels[0], (std::array<float, 4>{0.5f, 0.5f, 0.5f, 1}));
+  EXPECT_NEAR(image.pixels[7][0], 0.66f, 1e-5);
+  EXPECT_EQ(image.pixels[7][1], 0.5f);
+  EXPECT_EQ(image.pixels[7][2], 0.0f);
+}
+
+}  // namespace
+}  // namespace splatscope::studies
