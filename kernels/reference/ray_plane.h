@@ -35,8 +35,8 @@ struct RayHit {
   glm::dvec2 y{};  // the point is o + y.x a + y.y b
 };
 
-// The plane o + y.x a + y.y b (camera space) under the rays of window positions: Cramer's rule for
-// o + y.x a + y.y b = z ray.
+// The plane o + y.x a + y.y b (camera space) under the rays of window positions: Cramer's rule for o + y.x a
+// + y.y b = z ray.
 class RayPlane {
  public:
   RayPlane() = default;

@@ -44,15 +44,24 @@ class Renderer {
 
   ScreenSpacePicture draw(std::span<const Surfel> surfels) {
     std::vector<Splat> splats(surfels.size());
-    const RowBands bands(view_.height, surfels.size(), [&](std::size_t k) {
-      splats[k] = prepare(surfels[k]);
-      return RowRange{std::min(splats[k].quad_box.top, splats[k].box.top),
-                      std::max(splats[k].quad_box.bottom, splats[k].box.bottom)};
-    });
+    const RowBands bands(view_.height, surfels.size(),
+                         [&](std::size_t begin, std::size_t end, RowRange* rows) {
+                           for (std::size_t k = begin; k < end; ++k) {
+                             splats[k] = prepare(surfels[k]);
+                             rows[k - begin] = {std::min(splats[k].quad_box.top, splats[k].box.top),
+                                                std::max(splats[k].quad_box.bottom, splats[k].box.bottom)};
+                           }
+                           return end - begin;
+                         });
+    const auto for_each_splat = [&](int band, const auto& visit) {
+      bands.for_each_run(band, [&](std::span<const std::uint32_t> run) {
+        for (const std::uint32_t k : run) visit(splats[k]);
+      });
+    };
     bands.for_each_band([&](int band) {
       const RowRange rows = bands.rows(band);
-      bands.for_each_splat(band, [&](std::size_t k) { draw_quad(splats[k], rows); });
-      bands.for_each_splat(band, [&](std::size_t k) { add_splat(splats[k], rows); });
+      for_each_splat(band, [&](const Splat& splat) { draw_quad(splat, rows); });
+      for_each_splat(band, [&](const Splat& splat) { add_splat(splat, rows); });
       for (std::size_t i = index(rows.top, 0); i < index(rows.bottom, 0); ++i) {
         picture_.normalized[i] = normalized_color(picture_.sums[i]);
       }
