@@ -46,6 +46,8 @@ struct Splatting {
   double sigma = 0;         // standard deviation of the reconstruction filter, in units of a surfel's radius
   bool circular_cutoff = false;  // texels beyond the cutoff are 0; else the whole square is used
   VertexMemory vertex_memory = VertexMemory::video;
+  int visibility_program = 0;  // places in kernels::visibility_programs() and ewa_programs()
+  int ewa_program = 0;
 };
 
 // How the weights of per-surfel normalisation are captured (Ren 2002, section 7.2).

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "kernels/splat_programs.h"
+
 namespace splatscope::traces {
 namespace {
 
@@ -17,6 +19,12 @@ template <class... Parts>
 Overloaded(Parts...) -> Overloaded<Parts...>;
 
 using S = SceneSettings;
+
+std::vector<std::string_view> names_of(std::span<const kernels::SplatProgram> programs) {
+  std::vector<std::string_view> names;
+  for (const kernels::SplatProgram& program : programs) names.push_back(program.name);
+  return names;
+}
 
 // The default picture is Fig. 11 of Ren 2002: a plane of 64k surfels that recedes toward the horizon. The
 // paper gives neither its camera nor the size of its squares: these are a reconstruction.
@@ -80,6 +88,12 @@ const std::array kKeys = {
     SceneKey{
         "splatting", "vertex_memory", "", "where the vertex buffers lie",
         ChoiceValue{[](S& s, int i) { s.splatting.vertex_memory = VertexMemory(i); }, {"video", "agp"}, 0}},
+    SceneKey{"splatting", "visibility_program", "", "program of the first pass, with its vertices",
+             ChoiceValue{[](S& s, int i) { s.splatting.visibility_program = i; },
+                         names_of(kernels::visibility_programs()), 0}},
+    SceneKey{
+        "splatting", "ewa_program", "", "program of the second pass where it filters by EWA",
+        ChoiceValue{[](S& s, int i) { s.splatting.ewa_program = i; }, names_of(kernels::ewa_programs()), 0}},
 
     SceneKey{"capture", "views", "views",
              "spread evenly over the bounding sphere, that per-surfel weights are captured from",

@@ -7,63 +7,34 @@
 
 #include "kernels/object_space_ewa/alpha_texture.h"
 #include "kernels/object_space_ewa/programs.h"
+#include "kernels/splat_programs.h"
 
 namespace splatscope::traces {
 namespace {
 
-// A vertex as it lies in memory.
-struct Vertex {
-  float position[3];
-  float tangent_s[3];
-  float tangent_t[3];
-  float corner[2];
-  float filter[2];        // sigma, s_k
-  std::uint8_t color[4];  // b g r a
-};
-static_assert(sizeof(Vertex) == 56);
-
-constexpr std::uint32_t kCorners = 4;  // of a surfel's quad
-constexpr float kCornerPlaces[kCorners][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+constexpr std::uint32_t kCorners = 4;           // of a surfel's quad
 constexpr std::uint32_t kIndices = 6;           // two triangles
 constexpr std::uint32_t kSurfelsADraw = 16384;  // as many quads as 16-bit indices reach
 
-const std::vector<VertexAttribute> kAttributes = {
-    {kernels::kPositionInput, VertexFormat::float3, offsetof(Vertex, position)},
-    {kernels::kTangentSInput, VertexFormat::float3, offsetof(Vertex, tangent_s)},
-    {kernels::kTangentTInput, VertexFormat::float3, offsetof(Vertex, tangent_t)},
-    {kernels::kCornerInput, VertexFormat::float2, offsetof(Vertex, corner)},
-    {kernels::kFilterInput, VertexFormat::float2, offsetof(Vertex, filter)},
-    {kernels::kColorInput, VertexFormat::d3dcolor, offsetof(Vertex, color)}};
-
-void store(const glm::dvec3& from, float (&to)[3]) {
-  for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(from[i]);
+MemoryPlace place_of(const Splatting& settings) {
+  return settings.vertex_memory == VertexMemory::agp ? MemoryPlace::agp : MemoryPlace::video;
 }
 
-std::uint8_t color_byte(float value) {
-  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
-}
-
-Buffer vertex_buffer(std::span<const Surfel> surfels, std::span<const VertexWeights> weights,
-                     const Splatting& settings) {
+Buffer vertex_buffer(std::span<const kernels::VertexField> fields, std::span<const Surfel> surfels,
+                     std::span<const VertexWeights> weights, const Splatting& settings) {
   Buffer buffer;
-  buffer.place = settings.vertex_memory == VertexMemory::agp ? MemoryPlace::agp : MemoryPlace::video;
-  buffer.bytes.resize(surfels.size() * kCorners * sizeof(Vertex));
+  buffer.place = place_of(settings);
+  const std::size_t bytes = kernels::vertex_bytes(fields);
+  buffer.bytes.resize(surfels.size() * kCorners * bytes);
   std::byte* out = buffer.bytes.data();
   for (std::size_t k = 0; k < surfels.size(); ++k) {
-    const Surfel& surfel = surfels[k];
-    const Tangents axes = tangents(surfel);
-    Vertex vertex{};
-    store(surfel.position, vertex.position);
-    store(axes.s, vertex.tangent_s);
-    store(axes.t, vertex.tangent_t);
-    vertex.filter[0] = static_cast<float>(settings.sigma);
-    for (int i = 0; i < 3; ++i) vertex.color[i] = color_byte(surfel.color[2 - i]);
-    vertex.color[3] = 255;
+    const Tangents axes = tangents(surfels[k]);
+    kernels::Surfel surfel{glm::dvec3(surfels[k].position), axes.s, axes.t, settings.sigma, 0,
+                           glm::dvec3(surfels[k].color)};
     for (std::size_t i = 0; i < kCorners; ++i) {
-      std::ranges::copy(kCornerPlaces[i], vertex.corner);
-      vertex.filter[1] = weights[k][i];
-      std::memcpy(out, &vertex, sizeof vertex);
-      out += sizeof vertex;
+      surfel.weight = weights[k][i];
+      kernels::write_vertex(fields, {surfel, kernels::kQuadCorners[i], std::sqrt(2 * settings.cutoff)}, out);
+      out += bytes;
     }
   }
   return buffer;
@@ -81,8 +52,13 @@ Buffer quad_indices(std::size_t quads, MemoryPlace place) {
   return buffer;
 }
 
-// `draw` for all surfels, as many draws as 16-bit indices make of them.
-void append_draws(Draw draw, std::size_t surfels, Trace& trace) {
+// The draws of a pass: `program`, with its attributes and constants, for all surfels, in as many draws as
+// 16-bit indices make of them.
+void append_draws(Draw draw, const kernels::SplatProgram& program, const kernels::View& view,
+                  const Splatting& settings, std::size_t surfels, Trace& trace) {
+  draw.vertex_stride = kernels::vertex_bytes(program.fields);
+  draw.attributes = kernels::attributes_of(program.fields);
+  draw.constants = program.constants(view, settings.cutoff, settings.depth_offset);
   for (std::size_t first = 0; first < surfels; first += kSurfelsADraw) {
     draw.base_vertex = static_cast<std::uint32_t>(first * kCorners);
     draw.index_count =
@@ -114,7 +90,7 @@ std::array<glm::dvec3, 4> quad_corners(const Surfel& surfel, const Splatting& se
   const double reach = std::sqrt(2 * settings.cutoff) * settings.sigma;
   std::array<glm::dvec3, 4> corners;
   for (std::size_t i = 0; i < kCorners; ++i) {
-    const glm::dvec2 y = reach * (2.0 * glm::dvec2(kCornerPlaces[i][0], kCornerPlaces[i][1]) - 1.0);
+    const glm::dvec2 y = reach * (2.0 * kernels::kQuadCorners[i] - 1.0);
     corners[i] = glm::dvec3(surfel.position) + y.x * axes.s + y.y * axes.t;
   }
   return corners;
@@ -128,35 +104,39 @@ Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, co
   trace.commands.emplace_back(Clear{});
   if (surfels.empty()) return trace;
 
-  trace.buffers.push_back(vertex_buffer(surfels, pass.weights, settings));
+  const auto at = [](auto programs, int place) { return programs[static_cast<std::size_t>(place)]; };
+  const kernels::SplatProgram visibility = at(kernels::visibility_programs(), settings.visibility_program);
+  const kernels::SplatProgram splats =
+      pass.prefilter ? at(kernels::ewa_programs(), settings.ewa_program) : kernels::plain_program();
   trace.buffers.push_back(
-      quad_indices(std::min<std::size_t>(surfels.size(), kSurfelsADraw), trace.buffers[0].place));
+      quad_indices(std::min<std::size_t>(surfels.size(), kSurfelsADraw), place_of(settings)));
+  trace.buffers.push_back(vertex_buffer(visibility.fields, surfels, pass.weights, settings));
+  // Passes with the same vertices share them.
+  if (!std::ranges::equal(splats.fields, visibility.fields)) {
+    trace.buffers.push_back(vertex_buffer(splats.fields, surfels, pass.weights, settings));
+  }
   const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
   trace.textures.push_back(
       kernels::alpha_texture(settings.cutoff, kernels::optimal_length(settings.cutoff), shape));
-  trace.programs = {
-      kernels::object_space_ewa_program(kernels::kVisibilityProgram),
-      kernels::object_space_ewa_program(pass.prefilter ? kernels::kEwaProgram : kernels::kPlainProgram),
-      kernels::object_space_ewa_program(pass.sum_weights ? kernels::kWeightedSplatPixelProgram
-                                                         : kernels::kSplatPixelProgram)};
+  trace.programs = {kernels::shader_text(visibility.file), kernels::shader_text(splats.file),
+                    kernels::shader_text(pass.sum_weights ? kernels::kWeightedSplatPixelProgram
+                                                          : kernels::kSplatPixelProgram)};
 
   Draw draw;
   draw.vertex_program = 0;
-  draw.vertex_buffer = 0;
-  draw.vertex_stride = sizeof(Vertex);
-  draw.attributes = kAttributes;
-  draw.index_buffer = 1;
-  draw.constants = kernels::splat_constants(view, settings.cutoff, settings.depth_offset);
+  draw.index_buffer = 0;
+  draw.vertex_buffer = 1;
   draw.state.color_write = false;
-  append_draws(draw, surfels.size(), trace);
+  append_draws(draw, visibility, view, settings, surfels.size(), trace);
 
   draw.vertex_program = 1;
+  draw.vertex_buffer = static_cast<std::uint32_t>(trace.buffers.size() - 1);
   draw.pixel_program = 2;
   draw.texture = 0;
   draw.state = {.depth_test = true, .depth_write = false, .color_write = true, .blend = true};
   draw.state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
   draw.state.destination_factor = BlendFactor::one;
-  append_draws(draw, surfels.size(), trace);
+  append_draws(draw, splats, view, settings, surfels.size(), trace);
   return trace;
 }
 
@@ -164,7 +144,9 @@ std::vector<Command> seen_from(const kernels::View& view, const Splatting& setti
   std::vector<Command> commands = trace.commands;
   for (Command& command : commands) {
     if (auto* draw = std::get_if<Draw>(&command)) {
-      draw->constants = kernels::splat_constants(view, settings.cutoff, settings.depth_offset);
+      const kernels::SplatProgram& program =
+          kernels::splat_program(trace.programs[draw->vertex_program].name);
+      draw->constants = program.constants(view, settings.cutoff, settings.depth_offset);
     }
   }
   return commands;

@@ -10,7 +10,7 @@ namespace splatscope::kernels {
 namespace {
 
 isa::Program load(std::string_view name) {
-  const ShaderText text = object_space_ewa_program(name);
+  const ShaderText text = shader_text(name);
   return isa::load(text.text, text.name);
 }
 

@@ -9,7 +9,7 @@
 #include "model/error.h"
 
 namespace splatscope {
-std::span<const EmbeddedFile> object_space_ewa_programs();  // written by the build: ../build.cmake
+std::span<const EmbeddedFile> embedded_programs();  // written by the build: ../build.cmake
 }
 
 namespace splatscope::kernels {
@@ -28,11 +28,11 @@ constexpr double kSmallestP = 1e-15;
 
 }  // namespace
 
-ShaderText object_space_ewa_program(std::string_view name) {
-  for (const EmbeddedFile& file : object_space_ewa_programs()) {
+ShaderText shader_text(std::string_view name) {
+  for (const EmbeddedFile& file : embedded_programs()) {
     if (file.name == name) return {std::string(file.name), std::string(file.text)};
   }
-  throw ModelError(fmt::format("no program {} in kernels/object_space_ewa", name));
+  throw ModelError(fmt::format("no program {} in kernels", name));
 }
 
 std::vector<Vec4> splat_constants(const View& view, double cutoff, double depth_offset) {

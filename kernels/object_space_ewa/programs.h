@@ -11,13 +11,14 @@
 namespace splatscope::kernels {
 
 inline constexpr std::string_view kVisibilityProgram = "visibility.vs";
+inline constexpr std::string_view kCornerVisibilityProgram = "visibility_corner.vs";
 inline constexpr std::string_view kPlainProgram = "splat_plain.vs";
 inline constexpr std::string_view kEwaProgram = "splat_ewa.vs";
 inline constexpr std::string_view kSplatPixelProgram = "splat.ps";                   // blend SRC_ALPHA, ONE
 inline constexpr std::string_view kWeightedSplatPixelProgram = "splat_weighted.ps";  // blend ONE, ONE
 
 // A program by its file name. Throws ModelError where there is none of that name.
-ShaderText object_space_ewa_program(std::string_view name);
+ShaderText shader_text(std::string_view name);
 
 // Vertex inputs, the same for the three vertex programs: v0 to v5. A surfel is four vertices that differ only
 // in the corner; a quad's two triangles take them in the order (0,0), (1,0), (1,1), (0,1) or its reverse.

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "kernels/object_space_ewa/quad_runner.h"
+#include "kernels/short_ewa/programs.h"
 #include "model/error.h"
 
 namespace splatscope::kernels {
@@ -31,6 +32,9 @@ std::vector<Surfel> mixed_surfels(const View& view, std::uint32_t seed) {
   add({0, 0, 2}, {0.0075, 0.0025, -0.006}, {0.0025, 0.0075, 0.006});  // p = 0
   add({0, 0, 2}, {0.01, 0, 0}, {0, 0, 0.01});                         // edge-on: D = 0
   add({0.3, 0.1, -2}, {0.01, 0, 0}, {0, 0.01, 0});                    // behind the eye
+  SurfelRanges huge{.cosine = {1e-7, 1e-3},
+                    .spacing = {1e4, 1e6}};  // edge-on: rounding makes a variance negative
+  for (int i = 0; i < 500; ++i) surfels.push_back(random_surfel(view, huge, generator));
   return surfels;
 }
 
@@ -40,30 +44,42 @@ TEST(Programs, slots_of_the_paper) {
   EXPECT_EQ(isa::slot_count(load_program(kEwaProgram)), 78);
 }
 
-TEST(Programs, an_unknown_name_is_an_error) {
-  EXPECT_THROW(object_space_ewa_program("splat.vs"), ModelError);
+TEST(Programs, slots_of_the_short_ones) {
+  EXPECT_EQ(isa::slot_count(load_program(kCornerVisibilityProgram)), 9);
+  EXPECT_EQ(isa::slot_count(load_program(kPlaneProgram)), 31);
+  EXPECT_EQ(isa::slot_count(load_program(kFacingProgram)), 29);
 }
 
-class Liveness : public testing::TestWithParam<std::string_view> {};
+TEST(Programs, an_unknown_name_is_an_error) {
+  EXPECT_THROW(shader_text("splat.vs"), ModelError);
+}
+
+std::vector<SplatProgram> all_programs() {
+  std::vector<SplatProgram> programs{plain_program()};
+  programs.insert(programs.end(), visibility_programs().begin(), visibility_programs().end());
+  programs.insert(programs.end(), ewa_programs().begin(), ewa_programs().end());
+  return programs;
+}
+
+class Liveness : public testing::TestWithParam<SplatProgram> {};
 
 // Without any one instruction some surfel comes out otherwise: nothing is padding.
 TEST_P(Liveness, every_instruction_changes_an_output) {
   const View view = rounded(look_at({0, 0, -4}, {0, 0, 0}, {0, 1, 0}, 60.0, 512, 400, 0.1, 1000.0));
   const std::vector<Surfel> surfels = mixed_surfels(view, 78);
-  const std::vector<Vec4> constants = splat_constants(view, 1.0, kDepthOffset);
-  const isa::Program program = load_program(GetParam());
-  const auto whole = run_quads(program, Arithmetic::ieee, constants, surfels);
+  const std::vector<Vec4> constants = GetParam().constants(view, kCutoff, kDepthOffset);
+  const isa::Program program = load_program(GetParam().file);
+  const auto run = [&](const isa::Program& changed) {
+    return run_quads(changed, GetParam().fields, Arithmetic::ieee, constants, surfels);
+  };
+  const auto whole = run(program);
   for (std::size_t i = 0; i < program.instructions.size(); ++i) {
     isa::Program without = program;
     without.instructions.erase(without.instructions.begin() + static_cast<std::ptrdiff_t>(i));
-    EXPECT_NE(run_quads(without, Arithmetic::ieee, constants, surfels), whole)
-        << program.name << ":" << program.instructions[i].line << " is dead";
+    EXPECT_NE(run(without), whole) << program.name << ":" << program.instructions[i].line << " is dead";
   }
 }
-INSTANTIATE_TEST_SUITE_P(Programs, Liveness, testing::Values(kVisibilityProgram, kPlainProgram, kEwaProgram),
-                         [](const auto& info) {
-                           return std::string(info.param.substr(0, info.param.find('.')));
-                         });
+INSTANTIATE_TEST_SUITE_P(Programs, Liveness, testing::ValuesIn(all_programs()), program_name);
 
 // The frustum of splat_constants: clip coordinates over w are window coordinates and depth.
 TEST(Programs, projection_is_that_of_the_view) {
@@ -74,8 +90,7 @@ TEST(Programs, projection_is_that_of_the_view) {
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.2, 0.3, 1.0));
     const glm::dvec3 o = direction * (depth / direction.z);
     surfels[0].position = glm::dvec3(glm::inverse(view.object_to_camera) * glm::dvec4(o, 1.0));
-    const auto quads =
-        run_quads(load_program(kPlainProgram), Arithmetic::ieee, splat_constants(view, 1.0, 0.0), surfels);
+    const auto quads = run_quads(plain_program(), Arithmetic::ieee, view, 0.0, surfels);
     const glm::dvec4 clip(quads[0][0].position);  // no tangents: every corner is o
     const glm::dvec2 window = view.window(o);
     EXPECT_NEAR(view.center().x + 0.5 * view.width * clip.x / clip.w, window.x, 1e-3);
@@ -92,19 +107,20 @@ TEST(Programs, visibility_moves_corners_along_their_viewing_rays) {
   SurfelRanges ranges;
   ranges.depth[1] = 10.0;
   const std::vector<Surfel> surfels = random_surfels(view, ranges, 1000, generator);
-  const auto quads = run_quads(load_program(kVisibilityProgram), Arithmetic::ieee,
-                               splat_constants(view, 1.0, kDepthOffset), surfels);
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      const glm::dvec2 y = 2.0 * glm::dvec2(kCorners[corner]) - 1.0;
-      const glm::dvec3 p =
-          view.camera_space(surfels[i].position + y.x * surfels[i].tangent_s + y.y * surfels[i].tangent_t);
-      const glm::dvec3 moved = p + kDepthOffset * glm::normalize(p);
-      const glm::dvec4 clip(quads[i][corner].position);
-      const double tolerance = 1e-6 * (glm::length(p) + 5.0);  // 5: the eye's distance from the origin
-      EXPECT_NEAR(clip.w, moved.z, tolerance);
-      EXPECT_NEAR(clip.x * 0.5 * view.width / view.eta, moved.x, tolerance);
-      EXPECT_NEAR(clip.y * 0.5 * view.height / view.eta, moved.y, tolerance);
+  for (const SplatProgram& program : visibility_programs()) {
+    const auto quads = run_quads(program, Arithmetic::ieee, view, kDepthOffset, surfels);
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const glm::dvec2 y = 2.0 * kQuadCorners[corner] - 1.0;
+        const glm::dvec3 p =
+            view.camera_space(surfels[i].position + y.x * surfels[i].tangent_s + y.y * surfels[i].tangent_t);
+        const glm::dvec3 moved = p + kDepthOffset * glm::normalize(p);
+        const glm::dvec4 clip(quads[i][corner].position);
+        const double tolerance = 1e-6 * (glm::length(p) + 5.0);  // 5: the eye's distance from the origin
+        EXPECT_NEAR(clip.w, moved.z, tolerance);
+        EXPECT_NEAR(clip.x * 0.5 * view.width / view.eta, moved.x, tolerance);
+        EXPECT_NEAR(clip.y * 0.5 * view.height / view.eta, moved.y, tolerance);
+      }
     }
   }
 }
@@ -113,11 +129,12 @@ TEST(Programs, colour_and_texture_coordinates_pass) {
   const View view = test_view();
   std::mt19937 generator(5);
   const std::vector<Surfel> surfels{random_surfel(view, SurfelRanges{}, generator)};
-  for (const std::string_view name : {kPlainProgram, kEwaProgram}) {
-    const auto quads =
-        run_quads(load_program(name), Arithmetic::ieee, splat_constants(view, 1.0, 0.0), surfels);
+  std::vector<SplatProgram> programs{plain_program()};
+  programs.insert(programs.end(), ewa_programs().begin(), ewa_programs().end());
+  for (const SplatProgram& program : programs) {
+    const auto quads = run_quads(program, Arithmetic::ieee, view, 0.0, surfels);
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      EXPECT_EQ(quads[0][corner].texture, kCorners[corner]);
+      EXPECT_EQ(quads[0][corner].texture, glm::vec2(kQuadCorners[corner]));
       EXPECT_EQ(glm::vec3(quads[0][corner].diffuse), glm::vec3(surfels[0].color));
     }
   }

@@ -10,10 +10,12 @@
 #include <numbers>
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "kernels/object_space_ewa/programs.h"
 #include "kernels/reference/surfel_filter.h"
+#include "kernels/splat_programs.h"
 #include "model/isa/program.h"
 #include "model/number/formats.h"
 #include "model/vertex/vertex_program.h"
@@ -21,37 +23,32 @@
 // For the tests of this folder: surfels through a vertex program.
 namespace splatscope::kernels {
 
-inline constexpr glm::vec2 kCorners[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-
 struct CornerOutput {
   glm::vec4 position;  // oPos
   glm::vec4 diffuse;   // oD0
   glm::vec2 texture;   // oT0.xy
   bool operator==(const CornerOutput&) const = default;
 };
-using QuadOutput = std::array<CornerOutput, 4>;  // in the order of kCorners
+using QuadOutput = std::array<CornerOutput, 4>;  // in the order of kQuadCorners
 
-inline isa::Program load_program(std::string_view name) {
-  const ShaderText text = object_space_ewa_program(name);
+inline constexpr double kCutoff = 1.0;  // c of Eq. 14
+
+inline isa::Program load_program(std::string_view file) {
+  const ShaderText text = shader_text(file);
   return isa::load(text.text, text.name);
 }
 
-// The inputs of one corner of a surfel, in binary32.
-inline void set_inputs(vertex::InputBatch& batch, int vertex, const Surfel& surfel, const glm::vec2& corner) {
-  const auto set = [&](SurfelInput input, double x, double y, double z, double w) {
-    const double values[4] = {x, y, z, w};
-    for (int i = 0; i < 4; ++i) batch.v[input][i][vertex] = static_cast<float>(values[i]);
-  };
-  set(kPositionInput, surfel.position.x, surfel.position.y, surfel.position.z, 1);
-  set(kTangentSInput, surfel.tangent_s.x, surfel.tangent_s.y, surfel.tangent_s.z, 1);
-  set(kTangentTInput, surfel.tangent_t.x, surfel.tangent_t.y, surfel.tangent_t.z, 1);
-  set(kCornerInput, corner.x, corner.y, 0, 1);
-  set(kFilterInput, surfel.sigma, surfel.weight, 0, 1);
-  set(kColorInput, surfel.color.r, surfel.color.g, surfel.color.b, 1);
+// Names the cases of a test over programs.
+inline constexpr auto program_name = [](const auto& info) { return std::string(info.param.name); };
+
+inline const SplatProgram& ewa_program(std::string_view name) {
+  return *std::ranges::find(ewa_programs(), name, &SplatProgram::name);
 }
 
-inline std::vector<QuadOutput> run_quads(const isa::Program& program, Arithmetic arithmetic,
-                                         std::span<const Vec4> constants, std::span<const Surfel> surfels) {
+// Surfels whose vertices have `fields` through `program`. No format but binary32 rounds anything here.
+inline std::vector<QuadOutput> run_quads(const isa::Program& program, std::span<const VertexField> fields,
+                                         Arithmetic arithmetic, std::span<const Vec4> constants,
+                                         std::span<const Surfel> surfels) {
   const vertex::VertexProgram executable(program, arithmetic);
   constexpr std::size_t kQuads = vertex::kBatch / 4;
   std::vector<QuadOutput> outputs(surfels.size());
@@ -60,7 +57,14 @@ inline std::vector<QuadOutput> run_quads(const isa::Program& program, Arithmetic
   for (std::size_t first = 0; first < surfels.size(); first += kQuads) {
     const std::size_t quads = std::min(kQuads, surfels.size() - first);
     for (std::size_t i = 0; i < 4 * quads; ++i) {
-      set_inputs(in, static_cast<int>(i), surfels[first + i / 4], kCorners[i % 4]);
+      const Corner corner{surfels[first + i / 4], kQuadCorners[i % 4], std::sqrt(2.0 * kCutoff)};
+      for (const VertexField& field : fields) {
+        const glm::dvec4 value = field.value(corner);
+        for (int k = 0; k < 4; ++k) {
+          const double component = k < components(field.format) ? value[k] : k == 3 ? 1.0 : 0.0;
+          in.v[field.input][k][i] = static_cast<float>(component);
+        }
+      }
     }
     executable.run(constants, in, out, static_cast<int>(4 * quads));
     for (std::size_t i = 0; i < 4 * quads; ++i) {
@@ -72,6 +76,47 @@ inline std::vector<QuadOutput> run_quads(const isa::Program& program, Arithmetic
     }
   }
   return outputs;
+}
+
+inline std::vector<QuadOutput> run_quads(const SplatProgram& program, Arithmetic arithmetic,
+                                         std::span<const Vec4> constants, std::span<const Surfel> surfels) {
+  return run_quads(load_program(program.file), program.fields, arithmetic, constants, surfels);
+}
+
+inline std::vector<QuadOutput> run_quads(const SplatProgram& program, Arithmetic arithmetic, const View& view,
+                                         double depth_offset, std::span<const Surfel> surfels) {
+  return run_quads(program, arithmetic, program.constants(view, kCutoff, depth_offset), surfels);
+}
+
+// The corners in camera space. A program may scale oPos by any positive factor that is the same for the four
+// vertices; their mean is the surfel's centre, which gives the factor.
+inline std::array<glm::dvec3, 4> camera_space(const View& view, const Surfel& surfel,
+                                              const QuadOutput& quad) {
+  std::array<glm::dvec3, 4> corners;
+  glm::dvec3 mean{0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::dvec4 clip(quad[i].position);
+    corners[i] = {clip.x * view.width / (2.0 * view.eta), clip.y * view.height / (2.0 * view.eta), clip.w};
+    mean += 0.25 * corners[i];
+  }
+  const glm::dvec3 center = view.camera_space(surfel.position);
+  for (glm::dvec3& corner : corners) corner *= glm::dot(center, center) / glm::dot(center, mean);
+  return corners;
+}
+
+// The same in the surfel's plane, in units of s and t.
+inline std::array<glm::dvec2, 4> tangent_plane(const View& view, const Surfel& surfel,
+                                               const QuadOutput& quad) {
+  const glm::dvec3 s = view.camera_direction(surfel.tangent_s);
+  const glm::dvec3 t = view.camera_direction(surfel.tangent_t);
+  const glm::dmat2 gram{{glm::dot(s, s), glm::dot(s, t)}, {glm::dot(s, t), glm::dot(t, t)}};
+  std::array<glm::dvec2, 4> u;
+  const auto corners = camera_space(view, surfel, quad);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::dvec3 d = corners[i] - view.camera_space(surfel.position);
+    u[i] = glm::inverse(gram) * glm::dvec2(glm::dot(d, s), glm::dot(d, t));
+  }
+  return u;
 }
 
 // The view with every number rounded to binary32, as the constants hold it.

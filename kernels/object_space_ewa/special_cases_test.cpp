@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -9,8 +10,6 @@
 // and finite numbers that no scene has.
 namespace splatscope::kernels {
 namespace {
-
-constexpr double kCutoff = 1.0;
 
 // Camera space is object space.
 View plain_view() {
@@ -30,6 +29,14 @@ Surfel surfel_at(const glm::dvec3& o, const glm::dvec3& s, const glm::dvec3& t) 
   return surfel;
 }
 
+// With s and t exchanged where s x t points away from the eye, at the origin.
+Surfel facing_eye(Surfel surfel) {
+  if (glm::dot(glm::cross(surfel.tangent_s, surfel.tangent_t), surfel.position) > 0) {
+    std::swap(surfel.tangent_s, surfel.tangent_t);
+  }
+  return surfel;
+}
+
 bool finite(const QuadOutput& quad) {
   for (const CornerOutput& corner : quad) {
     for (int i = 0; i < 4; ++i) {
@@ -39,24 +46,19 @@ bool finite(const QuadOutput& quad) {
   return true;
 }
 
-QuadOutput run_one(const Surfel& surfel, const std::vector<Vec4>& constants,
-                   Arithmetic arithmetic = Arithmetic::ieee) {
-  return run_quads(load_program(kEwaProgram), arithmetic, constants, std::vector<Surfel>{surfel})[0];
+QuadOutput run_one(const SplatProgram& program, const View& view, const Surfel& surfel) {
+  return run_quads(program, Arithmetic::ieee, view, 0.0, std::vector<Surfel>{surfel})[0];
 }
 
-glm::dvec3 camera_space(const View& view, const glm::vec4& clip) {
-  return {clip.x * 0.5 * view.width / view.eta, clip.y * 0.5 * view.height / view.eta, clip.w};
-}
-
-// Camera-space vectors of the parallelogram: p_c = o + y0 a + y1 b.
-struct Parallelogram {
-  glm::dvec3 a, b;
-};
-Parallelogram parallelogram(const View& view, const QuadOutput& quad) {
-  const auto corner = [&](std::size_t i) { return camera_space(view, quad[i].position); };
+// The parallelogram's sides in units of s and t, over 2 sqrt(2c).
+glm::dmat2 measured_axes(const View& view, const Surfel& surfel, const QuadOutput& quad) {
+  const auto u = tangent_plane(view, surfel, quad);
   const double side = 2.0 * std::sqrt(2.0 * kCutoff);
-  return {(corner(1) - corner(0)) / side, (corner(3) - corner(0)) / side};
+  return {(u[1] - u[0]) / side, (u[3] - u[0]) / side};
 }
+
+class SpecialCases : public testing::TestWithParam<SplatProgram> {};
+INSTANTIATE_TEST_SUITE_P(Programs, SpecialCases, testing::ValuesIn(ewa_programs()), program_name);
 
 // Appendix A, as printed (`printed_sign`) or with Sgn(B) Sgn(p) for Sgn(Bp).
 glm::dmat2 appendix_a(const glm::dmat2& m, bool printed_sign) {
@@ -91,7 +93,7 @@ TEST(AppendixA, printed_sign_is_wrong_where_p_is_0_and_b_negative) {
 
 // The plane is tilted about a diagonal of s and t, so S = T exactly; the sign of B by the direction of the
 // tilt.
-TEST(SpecialCases, p_is_0) {
+TEST_P(SpecialCases, p_is_0) {
   const View view = plain_view();
   const double tilt = std::sqrt(0.375);
   for (const double direction : {-1.0, 1.0}) {
@@ -100,53 +102,65 @@ TEST(SpecialCases, p_is_0) {
     const SurfelFilter filter = *surfel_filter(view, surfel, true);
     ASSERT_NEAR(filter.variance[0][0] - filter.variance[1][1], 0.0, 1e-12);
     ASSERT_LT(direction * filter.variance[0][1], -0.01);
-    const Parallelogram splat = parallelogram(view, run_one(surfel, splat_constants(view, kCutoff, 0.0)));
-    const glm::dvec3 s = surfel.tangent_s;
-    const glm::dvec3 t = surfel.tangent_t;
-    const auto coordinates = [&](const glm::dvec3& v) {
-      return glm::dvec2(glm::dot(v, s) / glm::dot(s, s), glm::dot(v, t) / glm::dot(t, t));
-    };
-    const glm::dmat2 axes{coordinates(splat.a), coordinates(splat.b)};
+    const Surfel facing = facing_eye(surfel);
+    const glm::dmat2 axes = measured_axes(view, surfel, run_one(GetParam(), view, facing));
     expect_near(axes * glm::transpose(axes), filter.variance, 1e-4);
   }
 }
 
-// Every surfel of a plane that faces the camera, wherever it is: J is a multiple of I, and Rot(theta) = I.
-TEST(SpecialCases, t_is_0) {
+// Every surfel of a plane that faces the camera, wherever it is: J is a multiple of I.
+TEST_P(SpecialCases, t_is_0) {
   const View view = plain_view();
   for (const double x : {-0.5, 0.0, 0.3}) {
     for (const double y : {-0.4, 0.0, 0.6}) {
-      const Surfel surfel = surfel_at({x, y, 2}, {0.01, 0, 0}, {0, 0.01, 0});
-      const QuadOutput quad = run_one(surfel, splat_constants(view, kCutoff, 0.0));
+      const Surfel surfel = facing_eye(surfel_at({x, y, 2}, {0.01, 0, 0}, {0, 0.01, 0}));
+      const QuadOutput quad = run_one(GetParam(), view, surfel);
       ASSERT_TRUE(finite(quad));
-      const Parallelogram splat = parallelogram(view, quad);
-      const double r = 0.01 * std::sqrt(1.0 + 1.0 / (2.56 * 2.56));  // h is 2.56 pixels
-      EXPECT_LT(glm::distance(splat.a, glm::dvec3(r, 0, 0)), 1e-6);
-      EXPECT_LT(glm::distance(splat.b, glm::dvec3(0, r, 0)), 1e-6);
+      const glm::dmat2 axes = measured_axes(view, surfel, quad);
+      const double variance = 1.0 + 1.0 / (2.56 * 2.56);  // h is 2.56 pixels
+      expect_near(axes * glm::transpose(axes), glm::dmat2(variance), 1e-5);
     }
   }
 }
 
-// The eye is in the plane of the surfel: infinitely long along the ray, one pixel's filter and its own
-// across.
-TEST(SpecialCases, d_is_0) {
+// The eye is in the plane of the surfel: nothing is to be seen of it.
+TEST_P(SpecialCases, d_is_0) {
+  const View view = plain_view();
+  for (const glm::dvec3 across :
+       {glm::dvec3(0.01, 0, 0), glm::dvec3(0, 0.01, 0), glm::dvec3(0.006, 0.008, 0)}) {
+    for (const double along : {-0.01, 0.01}) {
+      const QuadOutput quad = run_one(GetParam(), view, surfel_at({0, 0, 2}, across, {0, 0, along}));
+      ASSERT_TRUE(finite(quad));
+      EXPECT_LT(quad[0].diffuse.w, 1e-4);
+    }
+  }
+}
+
+// The paper's program: infinitely long along the ray, one pixel's filter and its own across.
+TEST(SpecialCasesOfThePaper, d_is_0) {
   const View view = plain_view();
   for (const bool swapped : {false, true}) {
     Surfel surfel = surfel_at({0, 0, 2}, {0.01, 0, 0}, {0, 0, 0.01});
     if (swapped) std::swap(surfel.tangent_s, surfel.tangent_t);
-    const QuadOutput quad = run_one(surfel, splat_constants(view, kCutoff, 0.0));
-    ASSERT_TRUE(finite(quad));
-    const Parallelogram splat = parallelogram(view, quad);
-    EXPECT_NEAR(std::abs(splat.b.x), 0.01 * std::sqrt(1.0 + 1.0 / (2.56 * 2.56)), 1e-5);
-    EXPECT_GT(std::abs(splat.a.z), 100.0);
-    EXPECT_LT(quad[0].diffuse.w, 1e-4);
+    const QuadOutput quad = run_one(ewa_program("paper"), view, surfel);
+    const auto corner = [&](std::size_t i) {
+      return glm::dvec2(quad[i].position.x * 0.5 * view.width / view.eta, quad[i].position.w);  // x, z
+    };
+    const double side = 2.0 * std::sqrt(2.0 * kCutoff);
+    EXPECT_NEAR(std::abs(corner(3).x - corner(0).x) / side, 0.01 * std::sqrt(1.0 + 1.0 / (2.56 * 2.56)),
+                1e-5);
+    EXPECT_GT(std::abs(corner(1).y - corner(0).y) / side, 100.0);
   }
 }
 
 // Each guard of the program, switched off by its constant.
-TEST(SpecialCases, guards_act) {
+TEST(SpecialCasesOfThePaper, guards_act) {
   const View view = plain_view();
+  const SplatProgram& program = ewa_program("paper");
   const std::vector<Vec4> guarded = splat_constants(view, kCutoff, 0.0);
+  const auto is_finite = [&](const Surfel& surfel, const std::vector<Vec4>& constants) {
+    return finite(run_quads(program, Arithmetic::ieee, constants, std::vector<Surfel>{surfel})[0]);
+  };
   const auto without = [&](std::size_t index, std::size_t component) {
     std::vector<Vec4> constants = guarded;
     constants[index][component] = 0.0f;
@@ -156,37 +170,74 @@ TEST(SpecialCases, guards_act) {
   const Surfel edge_on = surfel_at({0, 0, 2}, {0.01, 0, 0}, {0, 0, 0.01});
   const Surfel at_eye = surfel_at({0.1, 0.1, 0}, {0.01, 0, 0}, {0, 0.01, 0});
   const Surfel zero = surfel_at({0, 0, 2}, {0, 0, 0}, {0, 0, 0});
-  for (const Surfel& surfel : {facing, edge_on, at_eye, zero}) EXPECT_TRUE(finite(run_one(surfel, guarded)));
-  EXPECT_FALSE(finite(run_one(at_eye, without(3, 2))));   // o_z >= near
-  EXPECT_FALSE(finite(run_one(zero, without(7, 0))));     // (S + T)^2 + 1e-16
-  EXPECT_FALSE(finite(run_one(edge_on, without(7, 1))));  // D^2 + 1e-11 (S + T)^2
-  EXPECT_FALSE(finite(run_one(facing, without(7, 3))));   // |p| >= 1e-15
+  for (const Surfel& surfel : {facing, edge_on, at_eye, zero}) EXPECT_TRUE(is_finite(surfel, guarded));
+  EXPECT_FALSE(is_finite(at_eye, without(3, 2)));   // o_z >= near
+  EXPECT_FALSE(is_finite(zero, without(7, 0)));     // (S + T)^2 + 1e-16
+  EXPECT_FALSE(is_finite(edge_on, without(7, 1)));  // D^2 + 1e-11 (S + T)^2
+  EXPECT_FALSE(is_finite(facing, without(7, 3)));   // |p| >= 1e-15
 }
 
 // Any position and tangents, orthogonal or not, zero or not, up to 1e6 times the near distance and more:
 // finite.
-TEST(SpecialCases, hostile_surfels_stay_finite) {
-  constexpr std::uint32_t kSeed = 99;
-  std::printf("seed %u\n", kSeed);
-  std::mt19937 generator(kSeed);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  const auto number = [&](double low, double high) {  // powers of ten, either sign, or 0
-    if (uniform(generator) < 0.15) return 0.0;
-    const double magnitude = std::pow(10.0, low + (high - low) * uniform(generator));
-    return uniform(generator) < 0.5 ? magnitude : -magnitude;
-  };
+class Hostile {
+ public:
+  explicit Hostile(std::uint32_t seed) : generator_(seed) { std::printf("seed %u\n", seed); }
+  double uniform() { return uniform_(generator_); }
+  double number(double low, double high) {  // powers of ten, either sign, or 0
+    if (uniform() < 0.15) return 0.0;
+    const double magnitude = std::pow(10.0, low + (high - low) * uniform());
+    return uniform() < 0.5 ? magnitude : -magnitude;
+  }
+  glm::dvec3 vector(double low, double high) {
+    return {number(low, high), number(low, high), number(low, high)};
+  }
+
+ private:
+  std::mt19937 generator_;
+  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+};
+
+void expect_finite(const SplatProgram& program, const std::vector<Surfel>& surfels) {
+  for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
+    const auto quads = run_quads(program, arithmetic, plain_view(), 0.0, surfels);
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+      ASSERT_TRUE(finite(quads[i])) << "surfel " << i << ", o_z = " << surfels[i].position.z;
+    }
+  }
+}
+
+TEST(SpecialCasesOfThePaper, hostile_surfels_stay_finite) {
+  Hostile hostile(99);
   for (const double low : {-6.0, -30.0}) {
     std::vector<Surfel> surfels(50000);
     for (Surfel& surfel : surfels) {
-      const auto vector = [&] { return glm::dvec3(number(low, 6), number(low, 6), number(low, 6)); };
-      surfel = surfel_at(vector(), vector(), vector());
-      surfel.sigma = std::pow(10.0, -3.0 + 6.0 * uniform(generator));
+      surfel = surfel_at(hostile.vector(low, 6), hostile.vector(low, 6), hostile.vector(low, 6));
+      surfel.sigma = std::pow(10.0, -3.0 + 6.0 * hostile.uniform());
     }
-    for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
-      const auto quads = run_quads(load_program(kEwaProgram), arithmetic,
-                                   splat_constants(plain_view(), kCutoff, 0.0), surfels);
-      for (std::size_t i = 0; i < surfels.size(); ++i) ASSERT_TRUE(finite(quads[i])) << "surfel " << i;
+    expect_finite(ewa_program("paper"), surfels);
+  }
+}
+
+// The same with s and t as the recorder makes them, at right angles and of one length, from 1e-6 to 1e6, in
+// front of the near plane. Only the paper's program promises finite numbers for what lies behind it.
+TEST_P(SpecialCases, hostile_positions_and_sizes_stay_finite) {
+  Hostile hostile(100);
+  for (const double low : {-6.0, -30.0}) {
+    std::vector<Surfel> surfels(50000);
+    for (Surfel& surfel : surfels) {
+      glm::dvec3 normal = hostile.vector(low, 6);
+      if (normal == glm::dvec3(0)) normal = {0, 0, -1};
+      normal = glm::normalize(normal);
+      const glm::dvec3 axis = std::abs(normal.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+      const glm::dvec3 s = glm::normalize(glm::cross(axis, normal));
+      const double h = std::pow(10.0, -6.0 + 12.0 * hostile.uniform());
+      surfel = surfel_at(hostile.vector(low, 6), h * s, h * glm::cross(normal, s));
+      glm::dvec3& o = surfel.position;
+      o.z = std::max(std::abs(o.z), plain_view().near_plane);
+      o = {std::clamp(o.x, -1000 * o.z, 1000 * o.z), std::clamp(o.y, -1000 * o.z, 1000 * o.z), o.z};
+      surfel.sigma = std::pow(10.0, -3.0 + 6.0 * hostile.uniform());
     }
+    expect_finite(GetParam(), surfels);
   }
 }
 

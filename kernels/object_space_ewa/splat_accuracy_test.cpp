@@ -13,21 +13,8 @@
 namespace splatscope::kernels {
 namespace {
 
-constexpr double kCutoff = 1.0;
 const double kRadius = std::sqrt(2.0 * kCutoff);
 constexpr int kCount = 100000;
-
-// Tangent-plane coordinates u of an output vertex: oPos back to camera space, onto the exact tangents.
-glm::dvec2 tangent_plane(const View& view, const Surfel& surfel, const glm::vec4& position) {
-  const double z = position.w;
-  const glm::dvec3 p{static_cast<double>(position.x) * view.width / (2.0 * view.eta),
-                     static_cast<double>(position.y) * view.height / (2.0 * view.eta), z};
-  const glm::dvec3 d = p - view.camera_space(surfel.position);
-  const glm::dvec3 s = view.camera_direction(surfel.tangent_s);
-  const glm::dvec3 t = view.camera_direction(surfel.tangent_t);
-  const glm::dmat2 gram{{glm::dot(s, s), glm::dot(s, t)}, {glm::dot(s, t), glm::dot(t, t)}};
-  return glm::inverse(gram) * glm::dvec2(glm::dot(d, s), glm::dot(d, t));
-}
 
 // Rot(theta) Lambda as the four corners show it.
 glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& u) {
@@ -52,12 +39,23 @@ double corner_error(const std::array<glm::dvec2, 4>& u, const glm::dmat2& axes, 
     double worst = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t image = symmetry < 4 ? (i + symmetry) % 4 : (symmetry - i) % 4;
-      const glm::dvec2 y = 2.0 * kRadius * (glm::dvec2(kCorners[image]) - 0.5);
+      const glm::dvec2 y = 2.0 * kRadius * (kQuadCorners[image] - 0.5);
       worst = std::max(worst, glm::distance(to_pixels(u[i]), to_pixels(axes * y)));
     }
     best = std::min(best, worst);
   }
   return best;
+}
+
+// The parallelogram with the same variance matrix as `axes` that is nearest to `measured`: every factor of a
+// variance matrix is `axes` times an orthogonal matrix.
+glm::dmat2 nearest_factor(const glm::dmat2& measured, const glm::dmat2& axes) {
+  glm::dmat2 turn = glm::inverse(axes) * measured;
+  const double mirror = glm::determinant(turn) < 0 ? -1.0 : 1.0;
+  turn[1] *= mirror;
+  const double angle = std::atan2(turn[0][1] - turn[1][0], turn[0][0] + turn[1][1]);
+  return axes * glm::dmat2{{std::cos(angle), std::sin(angle)},
+                           {-mirror * std::sin(angle), mirror * std::cos(angle)}};
 }
 
 // The same in the window, where every corner is at least half as far away as the surfel's centre; 0
@@ -92,43 +90,54 @@ struct Errors {
   int corners_compared = 0;
 };
 
-Errors measure(Arithmetic arithmetic, std::string_view program, std::uint32_t seed,
+// Programs that promise the principal axes; the others may have any factor of the variance matrix.
+bool has_principal_axes(const SplatProgram& program) {
+  return program.name == "paper" || program.name == "plain";
+}
+
+bool by_normal(const SplatProgram& program) {
+  return program.name == "plane" || program.name == "facing";
+}
+
+Errors measure(Arithmetic arithmetic, const SplatProgram& program, std::uint32_t seed,
                const SurfelRanges& ranges = {}) {
-  const bool prefilter = program == kEwaProgram;
+  const bool prefilter = program.name != "plain";
   const View view = test_view();
   std::mt19937 generator(seed);
   const std::vector<Surfel> surfels = random_surfels(view, ranges, kCount, generator);
-  const auto quads =
-      run_quads(load_program(program), arithmetic, splat_constants(view, kCutoff, 0.0), surfels);
+  const auto quads = run_quads(program, arithmetic, view, 0.0, surfels);
   Errors errors;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     const Surfel& surfel = surfels[i];
     const SurfelFilter filter = *surfel_filter(view, surfel, prefilter);
-    std::array<glm::dvec2, 4> u;
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      u[corner] = tangent_plane(view, surfel, quads[i][corner].position);
-    }
+    const std::array<glm::dvec2, 4> u = tangent_plane(view, surfel, quads[i]);
     const double weight = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter.determinant);
     errors.deviation = std::max(errors.deviation, deviation_error(measured_axes(u), filter.axes));
     errors.weight = std::max(errors.weight, std::abs(quads[i][0].diffuse.w / weight - 1.0));
-    if (prefilter && anisotropy(filter, surfel.sigma) < kRound) continue;
-    errors.corner =
-        std::max(errors.corner,
-                 corner_error(u, filter.axes, [&](const glm::dvec2& c) { return filter.jacobian * c; }));
-    errors.window_corner = std::max(errors.window_corner, window_corner_error(view, surfel, u, filter.axes));
+    glm::dmat2 axes = filter.axes;
+    if (!has_principal_axes(program)) {
+      axes = nearest_factor(measured_axes(u), axes);
+    } else if (prefilter && anisotropy(filter, surfel.sigma) < kRound) {
+      continue;
+    }
+    errors.corner = std::max(errors.corner,
+                             corner_error(u, axes, [&](const glm::dvec2& c) { return filter.jacobian * c; }));
+    errors.window_corner = std::max(errors.window_corner, window_corner_error(view, surfel, u, axes));
     ++errors.corners_compared;
   }
   std::printf(
       "%s, seed %u, %d surfels: standard deviation off by %.2e, weight by %.2e; corners of %d by %.2e "
-      "pixels, in "
-      "the window by %.2e\n",
-      std::string(program).c_str(), seed, kCount, errors.deviation, errors.weight, errors.corners_compared,
-      errors.corner, errors.window_corner);
+      "pixels, in the window by %.2e\n",
+      std::string(program.name).c_str(), seed, kCount, errors.deviation, errors.weight,
+      errors.corners_compared, errors.corner, errors.window_corner);
   return errors;
 }
 
-TEST(SplatAccuracy, ewa_in_ieee) {
-  const Errors errors = measure(Arithmetic::ieee, kEwaProgram, 2002);
+class EwaAccuracy : public testing::TestWithParam<SplatProgram> {};
+INSTANTIATE_TEST_SUITE_P(Programs, EwaAccuracy, testing::ValuesIn(ewa_programs()), program_name);
+
+TEST_P(EwaAccuracy, ieee) {
+  const Errors errors = measure(Arithmetic::ieee, GetParam(), 2002);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 0.005);
   EXPECT_LT(errors.corner, 0.1);
@@ -136,28 +145,31 @@ TEST(SplatAccuracy, ewa_in_ieee) {
   EXPECT_GT(errors.corners_compared, 99 * kCount / 100);
 }
 
-// Not promised by anyone: what the NV20 makes of the program. The bounds are those of ieee, and they hold.
-TEST(SplatAccuracy, ewa_in_nv20) {
-  const Errors errors = measure(Arithmetic::nv20, kEwaProgram, 2003);
+// Not promised by anyone: what the NV20 makes of the program. The bounds are those of ieee, and they hold but
+// for one: programs that take the plane by its normal turn an error of 1e-3 of the low-pass filter's pixel,
+// from a variance matrix whose eigenvalues are 1 and 1e4, into 0.13 pixel by the perspective of a splat 280
+// pixels wide at cos = 1e-3.
+TEST_P(EwaAccuracy, nv20) {
+  const Errors errors = measure(Arithmetic::nv20, GetParam(), 2003);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 0.005);
   EXPECT_LT(errors.corner, 0.1);
-  EXPECT_LT(errors.window_corner, 0.1);
+  EXPECT_LT(errors.window_corner, by_normal(GetParam()) ? 0.15 : 0.1);
 }
 
 // The guards cost nothing where a surfel is small: 1/1000 pixel.
-TEST(SplatAccuracy, ewa_of_tiny_surfels) {
+TEST_P(EwaAccuracy, tiny_surfels) {
   SurfelRanges ranges;
   ranges.spacing[0] = 1e-3;
   ranges.spacing[1] = 0.05;
-  const Errors errors = measure(Arithmetic::ieee, kEwaProgram, 2004, ranges);
+  const Errors errors = measure(Arithmetic::ieee, GetParam(), 2004, ranges);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.corner, 0.1);
   EXPECT_LT(errors.window_corner, 0.1);
 }
 
 TEST(SplatAccuracy, plain_in_ieee) {
-  const Errors errors = measure(Arithmetic::ieee, kPlainProgram, 2005);
+  const Errors errors = measure(Arithmetic::ieee, plain_program(), 2005);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 1e-6);
   EXPECT_LT(errors.corner, 0.001);

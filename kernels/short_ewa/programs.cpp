@@ -1,0 +1,39 @@
+#include "kernels/short_ewa/programs.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace splatscope::kernels {
+namespace {
+
+// Of near^2, added to z^2: a surfel at the eye keeps a finite 1/z, and one at the near plane loses 5e-6 of
+// it.
+constexpr double kDepthFloor = 1e-5;
+// Of the second pivot of W, (z/r)^2 or more but for rounding: r is a thousand times z before this floor
+// shows.
+constexpr double kSmallestPivot = 1e-6;
+
+Vec4 vec4(const glm::dvec4& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(v.w)};
+}
+
+}  // namespace
+
+std::vector<Vec4> plane_constants(const View& view, double, double) {
+  // A uniform scale of the camera space changes no picture: with unit rows it is that of the object.
+  const double scale = glm::length(glm::dvec3(view.object_to_camera[0]));
+  const glm::dmat4 rows = glm::transpose(view.object_to_camera) / scale;
+  const glm::dvec4 eye = glm::inverse(view.object_to_camera) * glm::dvec4(0, 0, 0, 1);
+  const double near = view.near_plane / scale;
+  const double depth = view.far_plane / (view.far_plane - view.near_plane);
+  const double eta_squared = view.eta * view.eta;
+  return {vec4(view.eta * rows[0]),
+          vec4(view.eta * rows[1]),
+          vec4(rows[2]),
+          vec4(eta_squared * eye),
+          vec4({2.0 / view.width, 2.0 / view.height, -depth * near, 1.0}),
+          vec4({0.0, -1.0 / near - 1.0, eta_squared, kDepthFloor * near * near}),
+          vec4({kSmallestPivot, 0.0, 0.0, 0.0})};
+}
+
+}  // namespace splatscope::kernels
