@@ -26,10 +26,11 @@ std::string quoted(const std::string& text) {
 std::string script_of(const Plot& plot) {
   std::string script =
       "set terminal svg size 720,440 font 'sans-serif,13' noenhanced background rgb 'white'\n"
-      "set key outside right\nset grid lc rgb '#d9dde1'\nset offsets graph 0.02, graph 0.02, graph 0.05, "
+      "set key below\nset grid lc rgb '#d9dde1'\nset offsets graph 0.02, graph 0.02, graph 0.05, "
       "graph 0.05\n";
   script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title),
                         quoted(plot.x_label), quoted(plot.y_label));
+  if (plot.same_scale) script += "set size ratio -1\n";
   if (plot.log_x) script += "set logscale x\n";
   if (plot.log_y) script += "set logscale y\n";
   std::string curves;

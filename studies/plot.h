@@ -10,12 +10,13 @@ struct Plot {
   std::string title;
   std::string x_label, y_label;  // with their units
   bool log_x = false, log_y = false;
+  bool same_scale = false;  // a unit of x is as long as one of y
   struct Series {
     std::string name;
     std::vector<double> x, y;  // of one length; values that are not finite are left out
     bool joined = true;        // by a line; else points alone
   };
-  std::vector<Series> series;
+  std::vector<Series> series = {};
 };
 
 // The plot as the text of an SVG file. Throws std::runtime_error where gnuplot fails or is missing.

@@ -22,7 +22,7 @@ TEST(Plot, DrawsEachSeriesUnderItsName) {
 }
 
 TEST(Plot, SaysWhereGnuplotRefuses) {
-  const Plot empty{.title = "nothing to draw", .x_label = "", .y_label = "", .series = {}};
+  const Plot empty{.title = "nothing to draw", .x_label = "", .y_label = ""};
   EXPECT_THROW(svg_of(empty), std::runtime_error);
 }
 

@@ -20,7 +20,7 @@
 #include "model/number/formats.h"
 #include "model/vertex/vertex_program.h"
 
-// For the tests of this folder: surfels through a vertex program.
+// Surfels through a vertex program, outside of a machine: for tests and figures.
 namespace splatscope::kernels {
 
 struct CornerOutput {

@@ -9,6 +9,7 @@ namespace splatscope::studies {
 std::span<const Study> reproductions() {
   static constexpr std::array kReproductions = {
       Study{"table1", "frame rates of the three algorithms on both machines", reproduce_table1},
+      Study{"fig8", "the object-space EWA resampling filter of a surfel", reproduce_figure8},
       Study{"fig11", "a checkerboard by the three algorithms", reproduce_figure11},
   };
   return kReproductions;
