@@ -84,7 +84,8 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
       ->required();
   command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
       ->capture_default_str();
-  command->add_option("--fidelity", options->fidelity, "functional, cycle or referee")->capture_default_str();
+  command->add_option("--fidelity", options->fidelity, "functional, throughput, cycle or referee")
+      ->capture_default_str();
   command
       ->add_option("--set", options->settings,
                    "KEY=VALUE: a parameter of the machine, as `machine show` lists it")

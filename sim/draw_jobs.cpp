@@ -111,6 +111,19 @@ Needs needs_of(const Trace& trace) {
   return needs;
 }
 
+std::vector<UnitLeftOut> units_left_out(const Needs& needs) {
+  std::vector<UnitLeftOut> left_out;
+  if (!needs.agp) left_out.push_back({"agp", "every buffer is in video memory"});
+  if (!needs.depth) left_out.push_back({"depth", "no draw tests or writes depth"});
+  if (!needs.color) {
+    for (const char* name : {"texture", "pixel", "blend"})
+      left_out.push_back({name, "no draw writes colour"});
+  } else if (!needs.texture) {
+    left_out.push_back({"texture", "no draw that writes colour samples a texture"});
+  }
+  return left_out;
+}
+
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                             const MemoryLayout& layout) {
   PreparedDraws prepared;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "model/command/commands.h"
@@ -34,6 +35,13 @@ struct Needs {
   bool texture = false;  // some draw that writes colour samples a texture
 };
 Needs needs_of(const Trace& trace);
+
+// A unit that the trace does not need, and why.
+struct UnitLeftOut {
+  std::string name;
+  std::string why;
+};
+std::vector<UnitLeftOut> units_left_out(const Needs& needs);
 
 // Clocks of a quad in the pixel unit: its arithmetic instructions at `pixel.instructions_per_clock`, at
 // least 1.

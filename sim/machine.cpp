@@ -93,17 +93,6 @@ int vertex_reads(const Trace& trace, const Machine& spec) {
   return (spec.fetch.pending_vertices + 1) * lines;
 }
 
-void list_left_out(const Needs& needs, std::vector<UnitLeftOut>& left_out) {
-  if (!needs.agp) left_out.push_back({"agp", "every buffer is in video memory"});
-  if (!needs.depth) left_out.push_back({"depth", "no draw tests or writes depth"});
-  if (!needs.color) {
-    for (const char* name : {"texture", "pixel", "blend"})
-      left_out.push_back({name, "no draw writes colour"});
-  } else if (!needs.texture) {
-    left_out.push_back({"texture", "no draw that writes colour samples a texture"});
-  }
-}
-
 // The units of a machine; null: the trace does not need it.
 struct Units {
   VertexFetch* fetch = nullptr;
@@ -265,7 +254,7 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<co
   PreparedDraws draws = prepare_draws(trace, work, spec, layout);
   machine->vertex_programs = std::move(draws.vertex_programs);
   machine->jobs = std::move(draws.jobs);
-  list_left_out(needs, machine->left_out);
+  machine->left_out = units_left_out(needs);
 
   Builder build(*machine, spec);
   const Units units = create_units(build, *machine, trace, spec, layout, needs);

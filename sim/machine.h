@@ -8,6 +8,7 @@
 #include "model/command/commands.h"
 #include "model/machine/machine.h"
 #include "model/work/work.h"
+#include "sim/draw_jobs.h"
 #include "sim/kernel/channel.h"
 #include "sim/kernel/clock_domain.h"
 #include "sim/units/command/command_processor.h"
@@ -16,12 +17,6 @@
 #include "sim/units/vertex/vertex_unit.h"
 
 namespace splatscope::sim {
-
-// A unit that the trace does not need, and why.
-struct UnitLeftOut {
-  std::string name;
-  std::string why;
-};
 
 // The simulated machine for one trace: its units, what connects them, and the draws made ready for them.
 // Two clock domains: *core* (vertex to blending, and the memory, which both machines run at the core's

@@ -45,7 +45,15 @@ void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit,
   result.event_hash = (std::rotl(result.event_hash, 7) ^ unit.event_hash()) * 0x9e3779b97f4a7c15u;
 }
 
-// A frame lasts from the end of the one before it to the end of its last command.
+void report_progress(const SimulatedMachine& machine, const std::function<void(double)>& progress) {
+  double triangles = 0;
+  for (const DrawJob& job : machine.jobs) triangles += static_cast<double>(job.work->triangles.size());
+  machine.assembly->on_progress(
+      [triangles, &progress](std::uint64_t done) { progress(static_cast<double>(done) / triangles); });
+}
+
+}  // namespace
+
 std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {
   std::vector<Cycle> cycles;
   Cycle start = 0;
@@ -56,15 +64,6 @@ std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {
   }
   return cycles;
 }
-
-void report_progress(const SimulatedMachine& machine, const std::function<void(double)>& progress) {
-  double triangles = 0;
-  for (const DrawJob& job : machine.jobs) triangles += static_cast<double>(job.work->triangles.size());
-  machine.assembly->on_progress(
-      [triangles, &progress](std::uint64_t done) { progress(static_cast<double>(done) / triangles); });
-}
-
-}  // namespace
 
 Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& spec, Scheduler scheduler,
                 const std::function<void(double)>& progress) {

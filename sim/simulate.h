@@ -51,6 +51,10 @@ struct Result {
   double frames_per_second() const { return static_cast<double>(frame_cycles.size()) / seconds; }
 };
 
+// Core cycles of each frame, from the end of the one before it to the end of its last command, of a result
+// whose `cycles` and `command_ends` are known.
+std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result);
+
 // Simulates `trace`, whose draws gave the stages `work` to do (one record for each Draw, in order), on
 // `machine`. `progress` is told the fraction done, from 0 to 1. May be called many times in a process, and
 // from several threads (which then take turns on the SystemC kernel). Throws UserError where a program of the

@@ -14,6 +14,7 @@ namespace {
 
 using testing::RandomMaker;
 using testing::RandomTrace;
+using testing::simple_trace;
 
 std::uint64_t statistic(const Result& result, std::string_view unit, std::string_view name) {
   for (const UnitStatistic& entry : result.statistics) {
@@ -28,34 +29,6 @@ const UnitBooks* books_of(const Result& result, std::string_view unit) {
     if (books.name == unit) return &books;
   }
   return nullptr;
-}
-
-// One draw of `triangles` triangles with three vertices and four quads each.
-RandomTrace simple_trace(int triangles) {
-  RandomTrace made = RandomMaker(1).trace();
-  made.trace.width = made.trace.height = 64;
-  made.trace.buffers = {{MemoryPlace::video, {}}, {MemoryPlace::video, {}}};
-  Draw draw;
-  draw.vertex_program = 1;
-  draw.vertex_stride = 32;
-  draw.index_buffer = 1;
-  draw.index_count = static_cast<std::uint32_t>(3 * triangles);
-  draw.state.blend = true;
-  draw.texture = 0;
-  DrawWork work;
-  work.command = 1;
-  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(triangles); ++i) {
-    for (std::uint32_t k = 0; k < 3; ++k) work.shaded_vertices.push_back(3 * i + k);
-    work.triangles.push_back({4, 1, 3, 1, TriangleOutcome::drawn});
-    for (std::uint16_t k = 0; k < 4; ++k) {
-      work.quads.push_back(
-          {static_cast<std::uint16_t>((i + k) % 32), static_cast<std::uint16_t>(i % 32), 15, 15, 1});
-      work.texel_blocks.push_back((7 * i + k) % 256);
-    }
-  }
-  made.trace.commands = {Clear{}, draw};
-  made.work = {work};
-  return made;
 }
 
 class RandomTraces : public ::testing::TestWithParam<unsigned> {};

@@ -6,6 +6,7 @@
 
 #include "model/error.h"
 #include "model/isa/program.h"
+#include "sim/fidelity/throughput.h"
 #include "studies/reference_comparison.h"
 #include "traces/output_files.h"
 #include "traces/trace_file.h"
@@ -15,8 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {
-    {"functional", Fidelity::functional}, {"cycle", Fidelity::cycle}, {"referee", Fidelity::referee}};
+constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {{"functional", Fidelity::functional},
+                                                                 {"throughput", Fidelity::throughput},
+                                                                 {"cycle", Fidelity::cycle},
+                                                                 {"referee", Fidelity::referee}};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -107,8 +110,9 @@ Fidelity fidelity_by_name(std::string_view name) {
   for (const auto& [known, fidelity] : kFidelities) {
     if (known == name) return fidelity;
   }
-  throw UserError("--fidelity", 0,
-                  fmt::format("unknown fidelity \"{}\", expected functional, cycle or referee", name));
+  throw UserError(
+      "--fidelity", 0,
+      fmt::format("unknown fidelity \"{}\", expected functional, throughput, cycle or referee", name));
 }
 
 std::string_view name(Fidelity fidelity) {
@@ -156,7 +160,9 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
     const auto scheduler =
         fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
     run.timing =
-        sim::simulate(trace, run.rendered.work, machine, scheduler, part(progress, kFunctionShare, 1));
+        fidelity == Fidelity::throughput
+            ? sim::estimate_throughput(trace, run.rendered.work, machine)
+            : sim::simulate(trace, run.rendered.work, machine, scheduler, part(progress, kFunctionShare, 1));
     run.timing_seconds = seconds_since(timing_start);
     run.rendered.work = {};
   }

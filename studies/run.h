@@ -18,9 +18,9 @@
 // The frames of a scene or a trace on one machine.
 namespace splatscope::studies {
 
-enum class Fidelity { functional, cycle, referee };
+enum class Fidelity { functional, throughput, cycle, referee };
 
-// "functional", "cycle", "referee". Throws UserError (file "--fidelity") for another name.
+// "functional", "throughput", "cycle", "referee". Throws UserError (file "--fidelity") for another name.
 Fidelity fidelity_by_name(std::string_view name);
 std::string_view name(Fidelity fidelity);
 

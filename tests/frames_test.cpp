@@ -143,6 +143,18 @@ TEST_P(ReducedFrame, SchedulersAgreeAndBooksAddUp) {
   }
 }
 
+// What docs/fidelity.md promises of each way to time a frame.
+TEST_P(ReducedFrame, ThroughputComesWithinTenPercentOfTheCycles) {
+  const auto& [name, algorithm] = GetParam();
+  const Machine machine = machine::load(name);
+  const Trace trace = traces::record(reduced_scene(algorithm), machine.numbers).trace;
+  const FrameRun estimate = run_frame(trace, machine, Fidelity::throughput);
+  const FrameRun simulated = run_frame(trace, machine, Fidelity::cycle);
+  EXPECT_NEAR(
+      1.0, static_cast<double>(estimate.timing->cycles) / static_cast<double>(simulated.timing->cycles), 0.1);
+  EXPECT_EQ(estimate.rendered.frame, simulated.rendered.frame);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Table1, ReducedFrame,
     testing::Combine(testing::Values(std::string("geforce4-ti4400"), std::string("radeon-8500")),

@@ -7,8 +7,8 @@
 #include "model/machine/machine.h"
 #include "model/work/work.h"
 
-// Small random traces with work that fits them, and machines with random depths and timings. No pictures: the
-// timing simulation looks at no value of a buffer or a texture.
+// Small random traces, and simple ones, with work that fits them, and machines with random depths and
+// timings. No pictures: the timing simulation looks at no value of a buffer or a texture.
 namespace splatscope::sim::testing {
 
 struct RandomTrace {
@@ -135,5 +135,33 @@ class RandomMaker {
 
   std::mt19937 random_;
 };
+
+// One draw of `triangles` triangles with three vertices and four quads each.
+inline RandomTrace simple_trace(int triangles) {
+  RandomTrace made = RandomMaker(1).trace();
+  made.trace.width = made.trace.height = 64;
+  made.trace.buffers = {{MemoryPlace::video, {}}, {MemoryPlace::video, {}}};
+  Draw draw;
+  draw.vertex_program = 1;
+  draw.vertex_stride = 32;
+  draw.index_buffer = 1;
+  draw.index_count = static_cast<std::uint32_t>(3 * triangles);
+  draw.state.blend = true;
+  draw.texture = 0;
+  DrawWork work;
+  work.command = 1;
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(triangles); ++i) {
+    for (std::uint32_t k = 0; k < 3; ++k) work.shaded_vertices.push_back(3 * i + k);
+    work.triangles.push_back({4, 1, 3, 1, TriangleOutcome::drawn});
+    for (std::uint16_t k = 0; k < 4; ++k) {
+      work.quads.push_back(
+          {static_cast<std::uint16_t>((i + k) % 32), static_cast<std::uint16_t>(i % 32), 15, 15, 1});
+      work.texel_blocks.push_back((7 * i + k) % 256);
+    }
+  }
+  made.trace.commands = {Clear{}, draw};
+  made.work = {work};
+  return made;
+}
 
 }  // namespace splatscope::sim::testing

@@ -7,35 +7,15 @@ namespace splatscope::sim {
 
 CachePipe::CachePipe(const Spec& spec)
     : items_(static_cast<std::uint32_t>(spec.items)),
-      ways_(static_cast<std::uint32_t>(spec.ways)),
       line_bytes_(spec.line_bytes),
       fill_bytes_(spec.fill_bytes),
-      tags_(static_cast<std::size_t>(spec.lines)),
-      set_mask_(static_cast<std::uint32_t>(spec.lines / spec.ways) - 1),
+      tags_(spec.lines, spec.ways),
       fifo_(std::bit_ceil(items_)) {}
 
 void CachePipe::connect(MemoryPort& port, std::uint32_t address) {
   port_ = &port;
   address_ = address;
   part_bytes_ = std::min(line_bytes_, port.interleave());
-}
-
-CachePipe::Way* CachePipe::find(std::uint32_t line) {
-  Way* set = &tags_[(line & set_mask_) * ways_];
-  for (std::uint32_t way = 0; way < ways_; ++way) {
-    if (set[way].line == line) return &set[way];
-  }
-  return nullptr;
-}
-
-CachePipe::Way& CachePipe::victim(std::uint32_t line) {
-  Way* set = &tags_[(line & set_mask_) * ways_];
-  Way* oldest = set;
-  for (std::uint32_t way = 0; way < ways_; ++way) {
-    if (set[way].line == kNoLine) return set[way];
-    if (set[way].used < oldest->used) oldest = &set[way];
-  }
-  return *oldest;
 }
 
 const Unit* CachePipe::move(Cycle now, std::uint32_t line, bool write) {
@@ -58,13 +38,12 @@ const Unit* CachePipe::move(Cycle now, std::uint32_t line, bool write) {
 }
 
 const Unit* CachePipe::touch(Cycle now, std::uint32_t line, bool fetch, bool dirty) {
-  if (Way* way = find(line)) {
+  if (CacheTags::Way* way = tags_.find(line)) {
     ++touches_;
-    way->used = ++clock_;
-    way->dirty |= dirty;
+    tags_.use(*way, dirty);
     return nullptr;
   }
-  Way& way = victim(line);
+  CacheTags::Way& way = tags_.victim(line);
   if (way.dirty) {
     if (const Unit* unit = move(now, way.line, true)) return unit;
     ++write_backs_;
@@ -75,7 +54,7 @@ const Unit* CachePipe::touch(Cycle now, std::uint32_t line, bool fetch, bool dir
   }
   ++touches_;
   ++misses_;
-  way = {line, ++clock_, dirty};
+  tags_.take(way, line, dirty);
   return nullptr;
 }
 
@@ -100,8 +79,8 @@ Cycle CachePipe::next_ready() {
 }
 
 bool CachePipe::flush(Cycle now) {
-  for (; flush_at_ < tags_.size(); ++flush_at_) {
-    Way& way = tags_[flush_at_];
+  for (; flush_at_ < tags_.all().size(); ++flush_at_) {
+    CacheTags::Way& way = tags_.all()[flush_at_];
     if (!way.dirty) continue;
     if (move(now, way.line, true)) {
       next_flush_ = next_try_;
@@ -120,7 +99,7 @@ bool CachePipe::flush(Cycle now) {
 }
 
 void CachePipe::invalidate() {
-  std::fill(tags_.begin(), tags_.end(), Way{});
+  tags_.invalidate();
 }
 
 }  // namespace splatscope::sim

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/units/cache/cache_tags.h"
 #include "sim/units/memory/memory_port.h"
 
 namespace splatscope::sim {
@@ -57,31 +58,20 @@ class CachePipe {
   std::uint64_t write_backs() const { return write_backs_; }
 
  private:
-  struct Way {
-    std::uint32_t line = kNoLine;
-    std::uint32_t used = 0;
-    bool dirty = false;
-  };
   struct Waiting {
     std::uint32_t item = 0;
     std::uint32_t reads = 0;
   };
-  static constexpr std::uint32_t kNoLine = ~std::uint32_t{0};
 
-  Way* find(std::uint32_t line);
-  Way& victim(std::uint32_t line);
   // Asks memory to move `line`, part by part where it spans memory channels. nullptr: all asked for; else the
   // unit in the way, and the next call goes on from there.
   const Unit* move(Cycle now, std::uint32_t line, bool write);
 
   std::uint32_t items_;
-  std::uint32_t ways_;
   std::uint32_t line_bytes_;
   std::uint32_t fill_bytes_;
   std::uint32_t part_bytes_ = 0;
-  std::vector<Way> tags_;  // a set's ways side by side
-  std::uint32_t set_mask_;
-  std::uint32_t clock_ = 0;  // of uses
+  CacheTags tags_;
   MemoryPort* port_ = nullptr;
   std::uint32_t address_ = 0;
   std::vector<Waiting> fifo_;

@@ -1,0 +1,75 @@
+#include "sim/fidelity/throughput.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/testing/random_trace.h"
+
+namespace splatscope::sim {
+namespace {
+
+using testing::RandomTrace;
+
+const UnitBooks& busiest(const Result& result) {
+  return *std::ranges::max_element(result.units, {}, &UnitBooks::busy);
+}
+
+struct Bottleneck {
+  std::string setting;
+  std::string unit;
+};
+
+class Bottlenecks : public ::testing::TestWithParam<Bottleneck> {};
+
+// Each machine is slow in one unit, which then sets the time of both.
+TEST_P(Bottlenecks, SetTheEstimateAsTheySetTheSimulation) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine::set(machine, GetParam().setting);
+  RandomTrace made = testing::simple_trace(4000);
+  const Result estimate = estimate_throughput(made.trace, made.work, machine);
+  const Result simulated = simulate(made.trace, made.work, machine);
+  EXPECT_EQ(GetParam().unit, busiest(simulated).name);
+  EXPECT_EQ(GetParam().unit, busiest(estimate).name);
+  EXPECT_NEAR(1.0, static_cast<double>(estimate.cycles) / static_cast<double>(simulated.cycles), 0.02);
+  EXPECT_NEAR(static_cast<double>(busiest(simulated).busy), static_cast<double>(busiest(estimate).busy),
+              0.02 * static_cast<double>(simulated.cycles));
+}
+
+INSTANTIATE_TEST_SUITE_P(Units, Bottlenecks,
+                         ::testing::Values(Bottleneck{"vertex.units=1", "vertex0"},
+                                           Bottleneck{"setup.clocks_per_triangle=64", "setup"},
+                                           Bottleneck{"primitive.clocks_per_triangle=64", "primitive"},
+                                           Bottleneck{"host.command_nanoseconds=1e6", "host"}));
+
+TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
+  RandomTrace made = testing::simple_trace(10);
+  made.trace.commands.emplace_back(NormalizeOnHost{});
+  made.trace.commands.emplace_back(Present{});
+  const Machine machine = machine::load("radeon-8500");
+  const Result estimate = estimate_throughput(made.trace, made.work, machine);
+  const Result simulated = simulate(made.trace, made.work, machine);
+  EXPECT_NEAR(1.0, static_cast<double>(estimate.cycles) / static_cast<double>(simulated.cycles), 1e-3);
+  EXPECT_EQ(estimate.command_ends.size(), simulated.command_ends.size());
+  ASSERT_EQ(estimate.frame_cycles.size(), 1u);
+  EXPECT_EQ(estimate.frame_cycles[0], estimate.cycles);
+}
+
+// The same units, under the same names, are there and left out.
+TEST(Throughput, KnowsTheUnitsThatATraceNeeds) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    testing::RandomMaker maker(seed);
+    const RandomTrace made = maker.trace();
+    const Machine machine = maker.machine();
+    const Result estimate = estimate_throughput(made.trace, made.work, machine);
+    const Result simulated = simulate(made.trace, made.work, machine);
+    ASSERT_EQ(estimate.units.size(), simulated.units.size());
+    for (std::size_t i = 0; i < estimate.units.size(); ++i) {
+      EXPECT_EQ(estimate.units[i].name, simulated.units[i].name);
+      EXPECT_EQ(estimate.units[i].busy + estimate.units[i].starved, estimate.cycles);
+    }
+    EXPECT_EQ(estimate.units_left_out.size(), simulated.units_left_out.size());
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::sim

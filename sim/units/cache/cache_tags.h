@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace splatscope::sim {
+
+// Which lines a set-associative cache holds; the least recently used of a set goes.
+class CacheTags {
+ public:
+  static constexpr std::uint32_t kNoLine = ~std::uint32_t{0};
+  struct Way {
+    std::uint32_t line = kNoLine;
+    std::uint32_t used = 0;
+    bool dirty = false;
+  };
+
+  // Both powers of two, ways at most lines.
+  CacheTags(int lines, int ways)
+      : ways_(static_cast<std::uint32_t>(ways)),
+        set_mask_(static_cast<std::uint32_t>(lines / ways) - 1),
+        tags_(static_cast<std::size_t>(lines)) {}
+
+  // Null where the line is not held.
+  Way* find(std::uint32_t line) {
+    Way* set = &tags_[(line & set_mask_) * ways_];
+    for (std::uint32_t way = 0; way < ways_; ++way) {
+      if (set[way].line == line) return &set[way];
+    }
+    return nullptr;
+  }
+  // The way that `line` will have: an empty one, else the least recently used of its set.
+  Way& victim(std::uint32_t line) {
+    Way* set = &tags_[(line & set_mask_) * ways_];
+    Way* oldest = set;
+    for (std::uint32_t way = 0; way < ways_; ++way) {
+      if (set[way].line == kNoLine) return set[way];
+      if (set[way].used < oldest->used) oldest = &set[way];
+    }
+    return *oldest;
+  }
+  void use(Way& way, bool dirty) {
+    way.used = ++clock_;
+    way.dirty |= dirty;
+  }
+  void take(Way& way, std::uint32_t line, bool dirty) { way = {line, ++clock_, dirty}; }
+
+  std::span<Way> all() { return tags_; }
+  void invalidate() { std::fill(tags_.begin(), tags_.end(), Way{}); }
+
+ private:
+  std::uint32_t ways_;
+  std::uint32_t set_mask_;
+  std::uint32_t clock_ = 0;  // of uses
+  std::vector<Way> tags_;    // a set's ways side by side
+};
+
+}  // namespace splatscope::sim
