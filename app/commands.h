@@ -16,6 +16,7 @@ void add_machine_command(CLI::App& app);
 void add_record_command(CLI::App& app, Invocation& invocation);
 void add_reproduce_command(CLI::App& app, Invocation& invocation);
 void add_run_command(CLI::App& app, Invocation& invocation);
+void add_sample_command(CLI::App& app, Invocation& invocation);
 void add_scene_command(CLI::App& app);
 void add_shader_command(CLI::App& app);
 void add_trace_command(CLI::App& app);

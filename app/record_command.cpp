@@ -21,7 +21,9 @@ struct Options {
 
 void record(const Options& options, bool quiet) {
   const NumberFormats numbers = machine::load(options.machine).numbers;
-  const traces::Scene scene = traces::load_scene(options.scene);
+  ProgressBar loading("loading", quiet);
+  const traces::Scene scene = traces::load_scene(options.scene, loading.callback());
+  loading.clear();
   { const traces::OutputFile writable(options.out); }  // before the work, not after it
   traces::Recording recording;
   {

@@ -25,6 +25,7 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
   std::cout << fmt::format("{} on {}\n", input.name, machine.title);
   if (input.recorded)
     std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels, traces::describe(input.skipped));
+  if (input.mesh.triangles > 0) std::cout << fmt::format("  {}\n", traces::describe(input.mesh));
   const RenderCounters& c = run.rendered.counters;
   std::cout << fmt::format(
       "  {} vertices shaded, {} triangles, {} fragments, of these {} passed the depth test\n", c.vertices,
@@ -56,7 +57,9 @@ void run(const Options& options, bool quiet) {
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   std::optional<kernels::ScreenMap> map;
   if (options.reference) map = studies::screen_map_by_name(*options.reference);
-  auto opened = studies::open_input(options.input);
+  ProgressBar loading("loading", quiet);
+  auto opened = studies::open_input(options.input, loading.callback());
+  loading.clear();
   traces::prepare_output_folder(options.out);
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::screen_space_reference(studies::scene_of(opened, options.input), *map);

@@ -92,6 +92,15 @@ Json reference_json(const Frame& frame, const kernels::ScreenSpacePicture& refer
           {"pixels_over_8", c.over_8}, {"inside_pixels", c.inside_pixels},   {"holes", c.holes}};
 }
 
+Json mesh_json(const traces::MeshCounts& mesh) {
+  return {{"triangles", mesh.triangles},
+          {"triangles_not_finite", mesh.triangles_not_finite},
+          {"triangles_out_of_range", mesh.triangles_out_of_range},
+          {"triangles_degenerate", mesh.triangles_degenerate},
+          {"normals_computed", mesh.normals_computed},
+          {"textures_unreadable", mesh.textures_unreadable}};
+}
+
 Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped) {
   return {{"drawn", recorded.surfels},
           {"weights_captured", recorded.weights_captured},
@@ -101,6 +110,7 @@ Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts
           {"skipped",
            {{"not_finite", skipped.not_finite},
             {"zero_radius", skipped.zero_radius},
+            {"duplicate", skipped.duplicate},
             {"zero_normal", skipped.zero_normal}}}};
 }
 
@@ -122,10 +132,10 @@ std::string_view name(Fidelity fidelity) {
   throw ModelError("a fidelity without a name");
 }
 
-std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace) {
+std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace, const Progress& progress) {
   if (std::filesystem::path(scene_or_trace).extension() == ".trace")
     return traces::read_trace(scene_or_trace);
-  return traces::load_scene(scene_or_trace);
+  return traces::load_scene(scene_or_trace, progress);
 }
 
 const traces::Scene& scene_of(const std::variant<Trace, traces::Scene>& opened, const std::string& name) {
@@ -136,10 +146,10 @@ const traces::Scene& scene_of(const std::variant<Trace, traces::Scene>& opened, 
 
 Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& name, const Machine& machine,
                  const Progress& progress) {
-  if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}};
+  if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}, {}};
   const traces::Scene& scene = std::get<traces::Scene>(opened);
   traces::Recording recording = traces::record(scene, machine.numbers, progress);
-  return {scene.name, std::move(recording.trace), recording.counts, scene.skipped};
+  return {scene.name, std::move(recording.trace), recording.counts, scene.skipped, scene.mesh};
 }
 
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
@@ -210,6 +220,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   results["counters"] = counters_json(run.rendered.counters);
   if (run.timing) results["statistics"] = statistics_json(*run.timing);
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);
+  if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
   if (run.reference) results["reference"] = reference_json(run.rendered.frame, *run.reference);
   results["host"] = {{"seconds", run.host_seconds}};
   if (run.timing) {

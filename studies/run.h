@@ -32,10 +32,12 @@ struct Input {
   Trace trace;
   std::optional<traces::RecordCounts> recorded;
   traces::SkipCounts skipped;
+  traces::MeshCounts mesh;
 };
 
 // A trace file (".trace"), a scene file, or a ready scene by its name: read and checked.
-std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace);
+std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace,
+                                              const Progress& progress = {});
 
 // The scene that was opened. Throws UserError for a trace, which knows no surfels: a reference has nothing to
 // draw.

@@ -1,5 +1,8 @@
 #include "traces/neighbours.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -8,6 +11,19 @@
 
 namespace splatscope::traces {
 namespace {
+
+// Calls use(i, found) for every surfel i with its `count` nearest, from several threads at once.
+template <class Use>
+void for_each(std::span<const Surfel> surfels, std::size_t count, const Use& use) {
+  const NeighbourSearch search(surfels);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surfels.size(), 256), [&](const auto& range) {
+    NeighbourSearch::Found found;
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      search.find(i, count, found);
+      use(i, found);
+    }
+  });
+}
 
 glm::vec3 normal_of(std::span<const Surfel> surfels, const NeighbourSearch::Found& near) {
   Eigen::Matrix<double, 3, Eigen::Dynamic> points(3, static_cast<Eigen::Index>(near.size()));
@@ -26,39 +42,30 @@ glm::vec3 normal_of(std::span<const Surfel> surfels, const NeighbourSearch::Foun
 }  // namespace
 
 void estimate_radii(std::span<Surfel> surfels, int neighbours) {
-  const NeighbourSearch search(surfels);
-  NeighbourSearch::Found near;
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    search.find(i, static_cast<std::size_t>(neighbours) + 1, near);
-    surfels[i].radius = static_cast<float>(near.distance(near.size() - 1));
-  }
+  for_each(surfels, static_cast<std::size_t>(neighbours) + 1, [&](std::size_t i, const auto& found) {
+    surfels[i].radius = static_cast<float>(found.distance(found.size() - 1));
+  });
 }
 
 void estimate_normals(std::span<Surfel> surfels, int neighbours, const glm::dvec3& eye) {
-  const NeighbourSearch search(surfels);
-  NeighbourSearch::Found near;
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    search.find(i, static_cast<std::size_t>(neighbours) + 1, near);
-    const glm::vec3 normal = normal_of(surfels, near);
+  for_each(surfels, static_cast<std::size_t>(neighbours) + 1, [&](std::size_t i, const auto& found) {
+    const glm::vec3 normal = normal_of(surfels, found);
     const bool faces_away = glm::dot(glm::dvec3(normal), eye - glm::dvec3(surfels[i].position)) < 0;
     surfels[i].normal = faces_away ? -normal : normal;
-  }
+  });
 }
 
 double average_spacing(std::span<const Surfel> surfels) {
   constexpr std::size_t kLook = 4;  // itself, and room for a few on the same point
-  const NeighbourSearch search(surfels);
-  NeighbourSearch::Found near;
-  double sum = 0;
+  std::vector<double> nearest(surfels.size(), 0.0);
+  for_each(surfels, kLook, [&](std::size_t i, const auto& found) {
+    for (std::size_t n = 0; n < found.size() && nearest[i] == 0; ++n) nearest[i] = found.distance(n);
+  });
+  double sum = 0;  // in this order: the same for any number of threads
   std::size_t count = 0;
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    search.find(i, kLook, near);
-    for (std::size_t n = 0; n < near.size(); ++n) {
-      if (near.distance(n) == 0) continue;
-      sum += near.distance(n);
-      ++count;
-      break;
-    }
+  for (double distance : nearest) {
+    sum += distance;
+    count += distance > 0 ? 1 : 0;
   }
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }

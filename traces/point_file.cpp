@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "model/error.h"
+#include "traces/output_files.h"
 #include "traces/ply_header.h"
 
 namespace splatscope::traces {
@@ -208,20 +209,64 @@ void check_size(const PlyHeader& header, const PlyElement& vertex, std::uintmax_
   std::uint64_t least = 0;  // bytes of a surfel; in ASCII a digit and a space a value
   for (const PlyProperty& p : vertex.properties)
     least += header.encoding == PlyEncoding::ascii ? 2 : size_in_bytes(p.is_list ? p.count_type : p.type);
-  if (vertex.count > (file_size + 1) / least)
+  if (vertex.count > (file_size + 1) / std::max<std::uint64_t>(least, 1))
     throw UserError(file, 0,
-                    fmt::format("{} vertices do not fit in its {} bytes, expected a whole file", vertex.count,
-                                file_size));
+                    fmt::format("{} {} do not fit in its {} bytes, expected a whole file", vertex.count,
+                                vertex.name == "vertex" ? "vertices" : vertex.name + " elements", file_size));
 }
+
+std::ifstream open(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::error_code error;
+  if (!in || std::filesystem::is_directory(path, error))
+    throw UserError(path.string(), 0, "cannot be read, expected a PLY file");
+  return in;
+}
+
+// A surfel in a file of write_ply.
+struct WrittenSurfel {
+  float values[7];  // position, normal, radius
+  std::uint8_t color[3];
+};
+constexpr std::size_t kWrittenBytes = 31;  // without the padding at its end
 
 }  // namespace
 
+bool ply_has_faces(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  std::ifstream in = open(path);
+  const PlyHeader header = read_ply_header(in, file);
+  bool faces = false;
+  for (const PlyElement& element : header.elements) {
+    check_size(header, element, std::filesystem::file_size(path), file);
+    faces |= element.name == "face" && element.count > 0;
+  }
+  return faces;
+}
+
+void write_ply(std::span<const Surfel> surfels, const std::filesystem::path& path) {
+  static_assert(std::endian::native == std::endian::little && sizeof(float) == 4);
+  std::string bytes =
+      fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", surfels.size());
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "radius"})
+    bytes += fmt::format("property float {}\n", name);
+  for (const char* name : {"red", "green", "blue"}) bytes += fmt::format("property uchar {}\n", name);
+  bytes += "end_header\n";
+  bytes.reserve(bytes.size() + kWrittenBytes * surfels.size());
+  for (const Surfel& s : surfels) {
+    WrittenSurfel out{
+        {s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z, s.radius}, {}};
+    for (int i = 0; i < 3; ++i)
+      out.color[i] = static_cast<std::uint8_t>(std::clamp(s.color[i], 0.0f, 1.0f) * 255.0f + 0.5f);
+    bytes.append(reinterpret_cast<const char*>(&out), kWrittenBytes);
+  }
+  write_file(path, bytes);
+}
+
 PointFile read_ply(const std::filesystem::path& path) {
   const std::string file = path.string();
-  std::ifstream in(path, std::ios::binary);
-  std::error_code error;
-  const auto file_size = std::filesystem::file_size(path, error);
-  if (!in || error) throw UserError(file, 0, "cannot be read, expected a PLY file");
+  std::ifstream in = open(path);
+  const auto file_size = std::filesystem::file_size(path);
   const PlyHeader header = read_ply_header(in, file);
   const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
                                    [](const PlyElement& e) { return e.name == "vertex"; });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "traces/scene.h"
@@ -21,5 +22,13 @@ struct PointFile {
 // missing, truncated, not PLY, x, y or z absent, half a group given. Memory is bounded by a small multiple of
 // the file's size.
 PointFile read_ply(const std::filesystem::path& path);
+
+// Whether a PLY file has an element "face" that is not empty: a mesh. Throws UserError where the header is
+// wrong or counts more than the file can hold.
+bool ply_has_faces(const std::filesystem::path& path);
+
+// Writes what read_ply reads, as a binary file: position, normal, radius, and color in 8 bits. Whole or not
+// at all (output_files.h).
+void write_ply(std::span<const Surfel> surfels, const std::filesystem::path& path);
 
 }  // namespace splatscope::traces

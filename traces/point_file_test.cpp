@@ -256,7 +256,9 @@ TEST_F(PointFileTest, PointsOnOnePlaceOrLineAreLeftOut) {
         "end_header\n{}",
         count, rows);
   };
-  EXPECT_EQ(scene_of(file(3, "1 1 1 1 1 1 1 1 1")).skipped.zero_radius, 3u);
+  const SkipCounts one_place = scene_of(file(3, "1 1 1 1 1 1 1 1 1")).skipped;
+  EXPECT_EQ(one_place.duplicate, 2u);
+  EXPECT_EQ(one_place.zero_radius, 1u);
   EXPECT_EQ(scene_of(file(1, "1 1 1")).skipped.zero_radius, 1u);
   EXPECT_EQ(scene_of(file(3, "1 1 1 2 2 2 3 3 3")).skipped.zero_normal, 3u);
   EXPECT_TRUE(scene_of(file(0, "")).surfels.empty());

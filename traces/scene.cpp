@@ -28,30 +28,41 @@ std::string read_text(const std::filesystem::path& path) {
   return std::move(text).str();
 }
 
+// "2 apples, 1 pear": what there is none of is not listed.
+std::string listed(std::initializer_list<std::pair<std::size_t, std::string_view>> counts) {
+  std::string text;
+  for (const auto& [count, what] : counts)
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  return text;
+}
+
 }  // namespace
 
-Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
-  const SceneSettings settings = parse_settings(text, file.string());
+Scene parse_scene(std::string_view text, const std::filesystem::path& file,
+                  const std::function<void(double)>& progress) {
+  SceneSettings settings = parse_settings(text, file.string());
   Scene scene;
   scene.name = file.stem().string();
-  scene.camera = settings.camera;
   scene.frame = {settings.width, settings.height};
   scene.splatting = settings.splatting;
   scene.capture = settings.capture;
-  Surfels surfels = make_surfels(settings, file.parent_path());
+  Surfels surfels = make_surfels(settings, file.parent_path(), progress);
   scene.surfels = std::move(surfels.surfels);
   scene.skipped = surfels.skipped;
+  scene.mesh = surfels.mesh;
+  scene.camera = settings.camera = surfels.camera;
+  check_camera(settings, file.string());
   scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : surfels.average_spacing;
   if (!(scene.splatting.gamma > 0)) scene.splatting.gamma = suitable_gamma(scene.surfels, scene.splatting);
   return scene;
 }
 
-Scene load_scene(const std::filesystem::path& name_or_path) {
+Scene load_scene(const std::filesystem::path& name_or_path, const std::function<void(double)>& progress) {
   std::error_code error;
   if (!std::filesystem::exists(name_or_path, error)) {
     for (const EmbeddedFile& ready : ready_scenes()) {
       const std::filesystem::path file(ready.name);
-      if (name_or_path == file || name_or_path == file.stem()) return parse_scene(ready.text, file);
+      if (name_or_path == file || name_or_path == file.stem()) return parse_scene(ready.text, file, progress);
     }
     std::string names;
     for (const EmbeddedFile& ready : ready_scenes())
@@ -61,19 +72,31 @@ Scene load_scene(const std::filesystem::path& name_or_path) {
         name_or_path.string(), 0,
         fmt::format("no such file, expected a scene file or the name of a ready scene: {}", names));
   }
-  return parse_scene(read_text(name_or_path), name_or_path);
+  return parse_scene(read_text(name_or_path), name_or_path, progress);
 }
 
 std::string describe(const SkipCounts& skipped) {
   if (skipped.total() == 0) return "none left out";
-  std::string reasons;
-  const auto add = [&](std::size_t count, std::string_view reason) {
-    if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
-  };
-  add(skipped.not_finite, "not finite");
-  add(skipped.zero_radius, "of radius 0");
-  add(skipped.zero_normal, "without a normal");
-  return fmt::format("{} left out ({})", skipped.total(), reasons);
+  return fmt::format("{} left out ({})", skipped.total(),
+                     listed({{skipped.not_finite, "not finite"},
+                             {skipped.zero_radius, "of radius 0"},
+                             {skipped.duplicate, "at the place of another"},
+                             {skipped.zero_normal, "without a normal"}}));
+}
+
+std::string describe(const MeshCounts& mesh) {
+  if (mesh.triangles == 0) return "";
+  const std::size_t left_out =
+      mesh.triangles_not_finite + mesh.triangles_out_of_range + mesh.triangles_degenerate;
+  std::string text = fmt::format("from {} triangles", mesh.triangles);
+  if (left_out > 0)
+    text += fmt::format(", {} left out ({})", left_out,
+                        listed({{mesh.triangles_not_finite, "not finite"},
+                                {mesh.triangles_out_of_range, "with a corner that does not exist"},
+                                {mesh.triangles_degenerate, "without area"}}));
+  const std::string mended = listed(
+      {{mesh.normals_computed, "normals computed"}, {mesh.textures_unreadable, "textures unreadable"}});
+  return mended.empty() ? text : text + ", " + mended;
 }
 
 std::string_view name(Algorithm algorithm) {

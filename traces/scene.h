@@ -2,10 +2,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "traces/models/mesh.h"
 
 // What a user wants drawn: surfels, a camera, and how to splat. It lives on the host; the recorder turns it
 // into a trace, which knows no surfel.
@@ -64,15 +67,17 @@ struct Capture {
 struct SkipCounts {
   std::size_t not_finite = 0;   // a NaN or INF in position, normal, radius or color
   std::size_t zero_radius = 0;  // radius <= 0
+  std::size_t duplicate = 0;    // at the position of an earlier one, with the same normal
   std::size_t zero_normal = 0;  // of length 0, or to be fitted to neighbours that lie on one line
 
-  std::size_t total() const { return not_finite + zero_radius + zero_normal; }
+  std::size_t total() const { return not_finite + zero_radius + duplicate + zero_normal; }
 };
 
 struct Scene {
   std::string name;  // the scene file's name without folder and ending
   std::vector<Surfel> surfels;
   SkipCounts skipped;
+  MeshCounts mesh;  // all 0 where the surfels come from no mesh
   Camera camera;
   Frame frame;
   Splatting splatting;
@@ -82,13 +87,17 @@ struct Scene {
 // Reads a scene file (TOML). Each key has a default (scene_keys.h). A surfel file's name is relative to the
 // scene file. `name_or_path` may also be the name of a ready scene ("checkerboard-no-ewa") where no such file
 // exists. Throws UserError: file missing, TOML wrong, key unknown, value of the wrong type or out of range.
-Scene load_scene(const std::filesystem::path& name_or_path);
+Scene load_scene(const std::filesystem::path& name_or_path, const std::function<void(double)>& progress = {});
 
 // The same from text; `file` is for messages and for finding the surfel file.
-Scene parse_scene(std::string_view text, const std::filesystem::path& file);
+Scene parse_scene(std::string_view text, const std::filesystem::path& file,
+                  const std::function<void(double)>& progress = {});
 
 // "2 left out (1 not finite, 1 of radius 0)", or "none left out".
 std::string describe(const SkipCounts& skipped);
+
+// "from 1000 triangles, 3 left out (3 degenerate), 12 normals computed"; empty where there is no mesh.
+std::string describe(const MeshCounts& mesh);
 
 // "no-ewa", "ewa-per-pixel", "ewa-per-surfel": as in scene files and results.
 std::string_view name(Algorithm algorithm);

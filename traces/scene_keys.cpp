@@ -27,13 +27,16 @@ std::vector<std::string_view> names_of(std::span<const kernels::SplatProgram> pr
 }
 
 // The default picture is Fig. 11 of Ren 2002: a plane of 64k surfels that recedes toward the horizon. The
-// paper gives neither its camera nor the size of its squares: these are a reconstruction.
+// paper gives neither its camera nor the size of its squares: these are a reconstruction. The camera's
+// defaults are the plane's; other surfels are framed (framing.h).
 const std::array kKeys = {
     SceneKey{"surfels", "file", "",
-             "surfel file (PLY), relative to the scene file; empty: `generator` makes them",
+             "surfel file (PLY) or mesh, relative to the scene file; empty: `generator` makes them",
              TextValue{[](S& s) -> std::string& { return s.surfels.file; }, ""}},
-    SceneKey{"surfels", "generator", "", "what makes the surfels where no file is given",
-             ChoiceValue{[](S& s, int i) { s.surfels.generator = Generator(i); }, {"plane"}, 0}},
+    SceneKey{
+        "surfels", "generator", "", "what makes the surfels where no file is given",
+        ChoiceValue{
+            [](S& s, int i) { s.surfels.generator = Generator(i); }, {"plane", "sphere", "torus-knot"}, 0}},
     SceneKey{"surfels", "columns", "surfels", "of the plane y = 0, along x, one unit apart, centred",
              IntegerValue{[](S& s) -> int& { return s.surfels.columns; }, 256, 1, 4096}},
     SceneKey{"surfels", "rows", "surfels", "of the plane, along z",
@@ -44,6 +47,18 @@ const std::array kKeys = {
              VectorValue{[](S& s) -> glm::dvec3& { return s.surfels.checker_light; }, {1, 1, 1}, 0, 1}},
     SceneKey{"surfels", "checker_dark", "r g b", "colour of the others",
              VectorValue{[](S& s) -> glm::dvec3& { return s.surfels.checker_dark; }, {0, 0, 0}, 0, 1}},
+    SceneKey{"surfels", "count", "surfels",
+             "taken from a mesh or a model, exactly; 0: as many as the model has, 100000 from a mesh",
+             IntegerValue{[](S& s) -> int& { return s.surfels.count; }, 0, 0, 1 << 24}},
+    SceneKey{"surfels", "pattern", "", "solid pattern on a mesh or a model; own: the colours that it has",
+             ChoiceValue{[](S& s, int i) { s.surfels.pattern = Pattern(i); },
+                         {pattern_names().begin(), pattern_names().end()},
+                         0}},
+    SceneKey{"surfels", "pattern_scale", "radii of the bounding sphere", "size of a square, stripe or spot",
+             RealValue{[](S& s) -> double& { return s.surfels.pattern_scale; }, 0.06, 1e-4, 10}},
+    SceneKey{"surfels", "shading", "",
+             "how far surfels of a mesh or a model that face away from the light are darkened; 0: not at all",
+             RealValue{[](S& s) -> double& { return s.surfels.shading; }, 0.75, 0, 1}},
     SceneKey{"surfels", "neighbours", "surfels",
              "nearest neighbours that a radius or normal is estimated from where the file has none",
              IntegerValue{[](S& s) -> int& { return s.surfels.neighbours; }, 8, 3, 64}},

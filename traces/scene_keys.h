@@ -6,12 +6,14 @@
 #include <variant>
 #include <vector>
 
+#include "traces/framing.h"
+#include "traces/models/patterns.h"
 #include "traces/scene.h"
 
 // Every key of a scene file, declared once: parsing, error messages and the documentation come from it.
 namespace splatscope::traces {
 
-enum class Generator { plane };
+enum class Generator { plane, sphere, torus_knot };
 
 struct SurfelSource {
   std::string file;  // empty: the generator
@@ -19,13 +21,25 @@ struct SurfelSource {
   int columns = 0, rows = 0;  // of the plane
   int checker_square = 0;     // surfels
   glm::dvec3 checker_light{}, checker_dark{};
+  int count = 0;  // to sample from a mesh or a model; 0: the model's own number, or kMeshSurfels
+  Pattern pattern = Pattern::own;
+  double pattern_scale = 0;  // radii of the bounding sphere
+  double shading = 0;
   int neighbours = 0;  // whose largest distance is the radius, and that the normal is fitted to
 };
+
+inline bool is_plane(const SurfelSource& source) {
+  return source.file.empty() && source.generator == Generator::plane;
+}
+
+inline constexpr std::size_t kMeshSurfels = 100000;
 
 // A scene file's values before surfels are made.
 struct SceneSettings {
   SurfelSource surfels;
   Camera camera;
+  CameraKeys camera_given;
+  int camera_line = 0;  // of [camera]; 0: none
   int width = 0, height = 0;
   Splatting splatting;
   Capture capture;

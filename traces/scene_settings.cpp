@@ -114,10 +114,27 @@ void read_table(SceneSettings& settings, std::string_view name, const toml::tabl
   }
 }
 
-// What no single key can tell.
-void check_together(const SceneSettings& settings, const toml::table& root, std::string_view file) {
-  const toml::table* camera = root["camera"].as_table();
-  const int at = camera ? line(*camera) : 0;
+CameraKeys keys_given(const toml::table& camera) {
+  return {.eye = camera.contains("eye"),
+          .target = camera.contains("target"),
+          .up = camera.contains("up"),
+          .fov_y_degrees = camera.contains("fov_y_degrees"),
+          .near = camera.contains("near"),
+          .far = camera.contains("far")};
+}
+
+void check_capture(const Capture& capture, const toml::table& root, std::string_view file) {
+  if (!glm::all(glm::lessThanEqual(capture.box_min, capture.box_max))) {
+    const toml::table* table = root["capture"].as_table();
+    throw UserError(file, table ? line(*table) : 0,
+                    "capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
+  }
+}
+
+}  // namespace
+
+void check_camera(const SceneSettings& settings, std::string_view file) {
+  const int at = settings.camera_line;
   const Camera& c = settings.camera;
   if (!(c.near < c.far))
     throw UserError(
@@ -128,15 +145,7 @@ void check_together(const SceneSettings& settings, const toml::table& root, std:
   if (glm::length(c.up) == 0) throw UserError(file, at, "camera.up is zero, expected a direction");
   if (glm::length(glm::cross(glm::normalize(view), glm::normalize(c.up))) < 1e-9)
     throw UserError(file, at, "camera.up lies along the line of sight, expected another direction");
-  const Capture& capture = settings.capture;
-  if (!glm::all(glm::lessThanEqual(capture.box_min, capture.box_max))) {
-    const toml::table* table = root["capture"].as_table();
-    throw UserError(file, table ? line(*table) : 0,
-                    "capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
-  }
 }
-
-}  // namespace
 
 SceneSettings parse_settings(std::string_view text, std::string_view file) {
   toml::table root;
@@ -156,7 +165,12 @@ SceneSettings parse_settings(std::string_view text, std::string_view file) {
                       fmt::format("\"{}\" is a value, expected a table [{}]", name.str(), name.str()));
     read_table(settings, name.str(), *node.as_table(), file);
   }
-  check_together(settings, root, file);
+  check_capture(settings.capture, root, file);
+  if (const toml::table* camera = root["camera"].as_table()) {
+    settings.camera_given = keys_given(*camera);
+    settings.camera_line = line(*camera);
+  }
+  if (is_plane(settings.surfels)) check_camera(settings, file);
   return settings;
 }
 

@@ -10,4 +10,9 @@ namespace splatscope::traces {
 // and a value of the wrong type or out of range.
 SceneSettings parse_settings(std::string_view text, std::string_view file);
 
+// That the settings' camera can see something: what no single key can tell, and what is known only when a
+// camera that a scene leaves open was made to frame its surfels. (parse_settings has checked the plane's.)
+// Throws UserError.
+void check_camera(const SceneSettings& settings, std::string_view file);
+
 }  // namespace splatscope::traces

@@ -1,9 +1,16 @@
 #include "traces/surfels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numeric>
+#include <tuple>
 
+#include "model/error.h"
+#include "traces/models/mesh_file.h"
+#include "traces/models/model_surfels.h"
+#include "traces/models/procedural.h"
 #include "traces/neighbours.h"
 #include "traces/plane.h"
 #include "traces/point_file.h"
@@ -26,13 +33,38 @@ bool normalize(Surfel& s) {
   return length > 0;
 }
 
+// The later ones of those at the same position with the same normal: their splats would count twice.
+std::size_t erase_duplicates(std::vector<Surfel>& surfels) {
+  const auto key = [&](std::uint32_t i) {
+    const Surfel& s = surfels[i];
+    return std::tie(s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z);
+  };
+  std::vector<std::uint32_t> order(surfels.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(
+      order, [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  std::vector<char> repeated(surfels.size(), 0);
+  for (std::size_t i = 1; i < order.size(); ++i) repeated[order[i]] = key(order[i]) == key(order[i - 1]);
+  std::size_t i = 0;
+  return std::erase_if(surfels, [&](const Surfel&) { return repeated[i++] != 0; });
+}
+
 Surfels complete(PointFile points, const SceneSettings& settings) {
   Surfels result;
+  result.camera = settings.camera;
   std::vector<Surfel>& surfels = points.surfels;
   result.skipped.not_finite = std::erase_if(surfels, [](const Surfel& s) { return !is_finite(s); });
-  if (!points.has_radii) estimate_radii(surfels, settings.surfels.neighbours);
-  result.skipped.zero_radius = std::erase_if(surfels, [](const Surfel& s) { return !(s.radius > 0); });
-  if (!points.has_normals) estimate_normals(surfels, settings.surfels.neighbours, settings.camera.eye);
+  const auto leave_out_zero_radii = [&] {
+    result.skipped.zero_radius += std::erase_if(surfels, [](const Surfel& s) { return !(s.radius > 0); });
+  };
+  if (points.has_radii) leave_out_zero_radii();
+  result.skipped.duplicate = erase_duplicates(surfels);
+  if (!points.has_radii) {
+    estimate_radii(surfels, settings.surfels.neighbours);
+    leave_out_zero_radii();
+  }
+  frame_camera(surfels, {settings.width, settings.height}, settings.camera_given, result.camera);
+  if (!points.has_normals) estimate_normals(surfels, settings.surfels.neighbours, result.camera.eye);
   result.skipped.zero_normal = std::erase_if(surfels, [](Surfel& s) { return !normalize(s); });
   for (Surfel& s : surfels) s.color = glm::clamp(s.color, 0.0f, 1.0f);
   result.average_spacing = average_spacing(surfels);
@@ -44,9 +76,43 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
 
 }  // namespace
 
-Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path& folder) {
-  if (settings.surfels.file.empty()) return {make_plane(settings.surfels), {}, kPlaneSpacing};
-  return complete(read_ply(folder / settings.surfels.file), settings);
+SampledModel sample_source(const SurfelSource& source, const std::filesystem::path& folder,
+                           const std::function<void(double)>& progress) {
+  Model model;
+  MeshCounts counts;
+  if (source.file.empty()) {
+    model = make_procedural(source.generator);
+    counts.triangles = model.mesh.triangles.size();
+  } else {
+    MeshFile file = read_mesh(folder / source.file);
+    counts = mend(file.model.mesh);
+    counts.triangles_out_of_range += file.faces_out_of_range;
+    counts.textures_unreadable = file.textures_unreadable;
+    model = std::move(file.model);
+    if (model.mesh.triangles.empty())
+      throw UserError((folder / source.file).string(), 0, "no triangle of it has a surface, expected a mesh");
+  }
+  ModelOptions options;
+  options.count = source.count > 0      ? static_cast<std::size_t>(source.count)
+                  : source.file.empty() ? default_count(source.generator)
+                                        : kMeshSurfels;
+  options.pattern = source.pattern;
+  options.pattern_scale = source.pattern_scale;
+  options.shading = source.shading;
+  options.neighbours = source.neighbours;
+  return {sample_model(model, options, progress), counts};
+}
+
+Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path& folder,
+                     const std::function<void(double)>& progress) {
+  const SurfelSource& source = settings.surfels;
+  if (is_plane(source)) return {make_plane(source), {}, {}, settings.camera, kPlaneSpacing};
+  if (!source.file.empty() && !is_mesh_file(folder / source.file))
+    return complete(read_ply(folder / source.file), settings);
+  SampledModel sampled = sample_source(source, folder, progress);
+  Surfels result = complete({std::move(sampled.surfels), true, true}, settings);
+  result.mesh = sampled.mesh;
+  return result;
 }
 
 }  // namespace splatscope::traces

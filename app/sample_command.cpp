@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/progress_bar.h"
+#include "traces/output_files.h"
+#include "traces/point_file.h"
+#include "traces/surfels.h"
+
+namespace splatscope::app {
+namespace {
+
+struct Options {
+  traces::SurfelSource source = traces::default_settings().surfels;
+  std::string out;
+};
+
+void sample(const Options& options, bool quiet) {
+  { const traces::OutputFile writable(options.out); }  // before the work, not after it
+  traces::SampledModel sampled;
+  {
+    ProgressBar progress("sampling", quiet);
+    sampled = traces::sample_source(options.source, "", progress.callback());
+  }
+  traces::write_ply(sampled.surfels, options.out);
+  std::cout << fmt::format("{}: {} surfels {}\n", options.out, sampled.surfels.size(),
+                           traces::describe(sampled.mesh));
+}
+
+}  // namespace
+
+void add_sample_command(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("sample", "a mesh as a file of surfels");
+  const auto options = std::make_shared<Options>();
+  traces::SurfelSource& source = options->source;
+  std::map<std::string, traces::Pattern> patterns;
+  for (std::string_view name : traces::pattern_names())
+    patterns.emplace(name, static_cast<traces::Pattern>(patterns.size()));
+  command->add_option("MESH", source.file, "any mesh that assimp reads: .obj, .off, .ply, .stl, .gltf, ...")
+      ->required();
+  command->add_option("-n", source.count, "surfels, exactly")
+      ->default_val(traces::kMeshSurfels)
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_option("-o", options->out, "surfel file to write (PLY)")->required();
+  command->add_option("--pattern", source.pattern, "solid pattern; own: the colours that the mesh has")
+      ->transform(CLI::CheckedTransformer(patterns))
+      ->default_str("own");
+  command
+      ->add_option("--pattern-scale", source.pattern_scale,
+                   "size of a square, stripe or spot, in radii of the model")
+      ->check(CLI::Range(1e-4, 10.0))
+      ->capture_default_str();
+  command->add_option("--shading", source.shading, "how far what faces away from the light is darkened")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->footer("Example: splatscope sample models/bunny.obj -n 50000 --pattern checker -o bunny.ply");
+  command->callback([options, &invocation] { sample(*options, invocation.quiet); });
+}
+
+}  // namespace splatscope::app

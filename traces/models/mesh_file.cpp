@@ -1,0 +1,222 @@
+#include "traces/models/mesh_file.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+#include "model/error.h"
+#include "traces/models/texture_image.h"
+#include "traces/point_file.h"
+
+namespace splatscope::traces {
+namespace {
+
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+// An OFF file says how much is in it; assimp takes memory for that before it looks.
+void check_off_size(const std::filesystem::path& path, std::uintmax_t file_size) {
+  std::ifstream in(path);
+  const auto next_word = [&] {
+    std::string word;
+    for (char c = 0; word.size() < 64 && in.get(c);) {
+      if (c == '#') in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+      const bool space = c == '#' || std::isspace(static_cast<unsigned char>(c)) != 0;
+      if (space && !word.empty()) break;
+      if (!space) word += c;
+    }
+    return word;
+  };
+  next_word();  // OFF, COFF, ...
+  for (const char* what : {"vertices", "faces"}) {
+    const std::string word = next_word();
+    char* end = nullptr;
+    const double count = std::strtod(word.c_str(), &end);
+    if (word.empty() || *end != '\0' || !(count >= 0 && 2 * count <= static_cast<double>(file_size)))
+      throw UserError(path.string(), 0,
+                      fmt::format("\"{}\" {} do not fit in its {} bytes, expected a whole OFF file", word,
+                                  what, file_size));
+  }
+}
+
+// What colours the parts of a mesh file, by the number of their material.
+struct Materials {
+  struct Material {
+    glm::vec3 color{0.85f};
+    std::optional<TextureImage> texture;
+  };
+  std::vector<Material> materials;
+  bool vertex_colors = false;
+
+  glm::vec3 operator()(const SurfacePoint& point) const {
+    const Material& material = materials[point.part];
+    if (material.texture) return material.texture->at(point.texcoord);
+    return vertex_colors ? point.color : material.color;
+  }
+};
+
+std::optional<TextureImage> texture_of(const aiScene& scene, const std::string& name,
+                                       const std::filesystem::path& folder) {
+  const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str());
+  if (!embedded) {
+    std::string path = name;
+    std::ranges::replace(path, '\\', '/');
+    return read_texture(folder / path);
+  }
+  if (embedded->mHeight == 0)
+    return read_texture(
+        std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)),
+        embedded->achFormatHint);
+  TextureImage image{embedded->mWidth, embedded->mHeight, {}};
+  for (std::size_t i = 0; i < image.width * image.height; ++i) {
+    const aiTexel& texel = embedded->pcData[i];
+    image.texels.insert(image.texels.end(), {texel.r, texel.g, texel.b});
+  }
+  if (image.texels.empty()) return std::nullopt;
+  return image;
+}
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, aiScene& scene) : path_(path), scene_(scene) {}
+
+  MeshFile read() {
+    read_materials();
+    add(*scene_.mRootNode, aiMatrix4x4());
+    Mesh& mesh = file_.model.mesh;
+    if (mesh.triangles.empty()) throw UserError(path_.string(), 0, "holds no triangles, expected a mesh");
+    if (!any_normals_) mesh.normals.clear();
+    if (!any_texcoords_) mesh.texcoords.clear();
+    if (!materials_->vertex_colors) mesh.colors.clear();
+    file_.model.paint = [materials = materials_](const SurfacePoint& point) { return (*materials)(point); };
+    return std::move(file_);
+  }
+
+ private:
+  void read_materials() {
+    for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
+      Materials::Material material;
+      aiString name;
+      aiColor3D color;
+      scene_.mMaterials[i]->Get(AI_MATKEY_NAME, name);
+      const bool made_up = std::string_view(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME;
+      if (!made_up && scene_.mMaterials[i]->Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS)
+        material.color = {color.r, color.g, color.b};
+      for (aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
+        aiString texture;
+        if (scene_.mMaterials[i]->GetTexture(type, 0, &texture) != aiReturn_SUCCESS) continue;
+        material.texture = texture_of(scene_, texture.C_Str(), path_.parent_path());
+        if (!material.texture) ++file_.textures_unreadable;
+        break;
+      }
+      materials_->materials.push_back(std::move(material));
+    }
+    if (materials_->materials.empty()) materials_->materials.emplace_back();
+  }
+
+  void add(const aiNode& node, const aiMatrix4x4& parent) {
+    const aiMatrix4x4 transform = parent * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene_.mMeshes[node.mMeshes[i]], transform);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], transform);
+  }
+
+  void add(const aiMesh& from, const aiMatrix4x4& transform) {
+    Mesh& mesh = file_.model.mesh;
+    const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+    if (mesh.triangles.size() + from.mNumFaces > kMostTriangles)
+      throw UserError(path_.string(), 0,
+                      fmt::format("has more than {} triangles, expected fewer", kMostTriangles));
+    const aiMatrix3x3 turn = aiMatrix3x3(transform).Inverse().Transpose();
+    const bool texcoords = from.HasTextureCoords(0), colors = from.HasVertexColors(0);
+    any_normals_ |= from.HasNormals();
+    any_texcoords_ |= texcoords;
+    materials_->vertex_colors |= colors;
+    for (unsigned i = 0; i < from.mNumVertices; ++i) {
+      const aiVector3D p = transform * from.mVertices[i];
+      const aiVector3D n = from.HasNormals() ? turn * from.mNormals[i] : aiVector3D();
+      mesh.positions.emplace_back(p.x, p.y, p.z);
+      mesh.normals.emplace_back(n.x, n.y, n.z);
+      mesh.texcoords.push_back(texcoords ? glm::vec2(from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y)
+                                         : glm::vec2());
+      mesh.colors.push_back(colors
+                                ? glm::vec3(from.mColors[0][i].r, from.mColors[0][i].g, from.mColors[0][i].b)
+                                : glm::vec3(0.85f));
+    }
+    const auto last_material = static_cast<std::uint32_t>(materials_->materials.size() - 1);
+    for (unsigned i = 0; i < from.mNumFaces; ++i) {
+      const aiFace& face = from.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // points and lines have no surface
+      mesh.triangles.push_back({face.mIndices[0] + base, face.mIndices[1] + base, face.mIndices[2] + base});
+      mesh.parts.push_back(std::min(from.mMaterialIndex, last_material));
+    }
+  }
+
+  const std::filesystem::path& path_;
+  const aiScene& scene_;
+  MeshFile file_;
+  std::shared_ptr<Materials> materials_ = std::make_shared<Materials>();
+  bool any_normals_ = false, any_texcoords_ = false;
+};
+
+// Faces with an index beyond the vertices become faces of nothing. Returns how many; tells of larger
+// polygons.
+std::size_t drop_faces_out_of_range(aiScene& scene, bool& polygons) {
+  std::size_t dropped = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      aiFace& face = mesh.mFaces[i];
+      const bool beyond = std::any_of(face.mIndices, face.mIndices + face.mNumIndices,
+                                      [&](unsigned index) { return index >= mesh.mNumVertices; });
+      if (beyond) {
+        face.mNumIndices = 1;
+        face.mIndices[0] = 0;
+        ++dropped;
+      }
+      polygons |= face.mNumIndices > 3;
+    }
+  }
+  return dropped;
+}
+
+}  // namespace
+
+bool is_mesh_file(const std::filesystem::path& path) {
+  return ending_of(path) != ".ply" || ply_has_faces(path);
+}
+
+MeshFile read_mesh(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  std::error_code error;
+  const bool regular = std::filesystem::is_regular_file(path, error);
+  if (!regular || !std::ifstream(path)) throw UserError(file, 0, "cannot be read, expected a mesh");
+  if (ending_of(path) == ".off") check_off_size(path, std::filesystem::file_size(path));
+  Assimp::Importer importer;
+  if (!importer.IsExtensionSupported(ending_of(path)))
+    throw UserError(file, 0,
+                    "has no ending that assimp knows, expected a mesh such as .ply, .obj, .off or .stl");
+  if (!importer.ReadFile(file, 0))
+    throw UserError(file, 0,
+                    fmt::format("assimp says \"{}\", expected a whole mesh", importer.GetErrorString()));
+  // Post-processing trusts the indices: they are checked between the two steps.
+  bool polygons = false;
+  auto* scene =
+      const_cast<aiScene*>(importer.GetScene());  // the importer keeps it, unchanged but for the faces
+  if (!scene->mRootNode) throw UserError(file, 0, "holds no triangles, expected a mesh");
+  const std::size_t dropped = drop_faces_out_of_range(*scene, polygons);
+  if (polygons && !importer.ApplyPostProcessing(aiProcess_Triangulate))
+    throw UserError(file, 0, "its polygons cannot be cut into triangles, expected a mesh");
+  MeshFile result = Reader(path, *scene).read();
+  result.faces_out_of_range = dropped;
+  return result;
+}
+
+}  // namespace splatscope::traces

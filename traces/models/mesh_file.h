@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+
+#include "traces/models/mesh.h"
+
+namespace splatscope::traces {
+
+struct MeshFile {
+  Model model;                          // unmended; colours from texture, vertex colours or material
+  std::size_t faces_out_of_range = 0;   // left out already: an index beyond the vertices
+  std::size_t textures_unreadable = 0;  // the material's colour stands in
+};
+
+// Whether a surfel file is a mesh: a PLY with faces, or any other ending. Throws UserError where a PLY's
+// header is wrong.
+bool is_mesh_file(const std::filesystem::path& path);
+
+// Any format of assimp, told by the file's ending. Textures are found beside the mesh. Throws UserError:
+// missing, unknown format, broken, more than kMostTriangles, no triangles. Memory is bounded by a multiple of
+// the file's size as far as the format's reader keeps to that; counts that a PLY or OFF file cannot hold are
+// refused.
+MeshFile read_mesh(const std::filesystem::path& path);
+
+inline constexpr std::size_t kMostTriangles = 64'000'000;
+
+}  // namespace splatscope::traces

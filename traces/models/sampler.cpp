@@ -1,0 +1,246 @@
+#include "traces/models/sampler.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <queue>
+#include <unordered_map>
+
+#include "traces/models/triangle.h"
+#include "traces/models/voxels.h"
+
+namespace splatscope::traces {
+namespace {
+
+constexpr std::size_t kPlaces = 4;  // tried for each point
+constexpr std::uint32_t kNone = ~0u;
+
+// SplitMix64: neighbouring numbers give unrelated bits.
+std::uint64_t scramble(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+glm::dvec3 squared(const glm::dvec3& v) {
+  return v * v;
+}
+
+double distance2(const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 d = squared(a - b);
+  return d.x + d.y + d.z;
+}
+
+// The point of the cell's triangles closest to `place`; on ties the first.
+MeshSample closest(const Mesh& mesh, const SampledCell& cell, const glm::dvec3& place) {
+  MeshSample best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t number : cell.triangles) {
+    const Triangle t = triangle_of(mesh, number);
+    const glm::dvec3 weights = closest_point(t, place);
+    const glm::dvec3 point = point_at(t, weights);
+    const double distance = distance2(point, place);
+    if (!(distance < least)) continue;
+    least = distance;
+    best = {glm::vec3(point), number, weights};
+  }
+  return best;
+}
+
+// Projection onto the surface inside the cell. A triangle goes on beyond its cell, and the closest point may
+// lie there; going back and forth between two convex bodies that meet leads to where they do.
+MeshSample project(const Mesh& mesh, const SampledCell& cell, const glm::dvec3& place) {
+  constexpr int kTries = 4;
+  const glm::dvec3 half = 0.5 * cell.dimensions;
+  MeshSample found = closest(mesh, cell, place);
+  for (int i = 1; i < kTries; ++i) {
+    const glm::dvec3 point(found.position);
+    const glm::dvec3 inside = glm::clamp(point, cell.center - half, cell.center + half);
+    if (inside == point) break;
+    found = closest(mesh, cell, inside);
+  }
+  return found;
+}
+
+class Sampler {
+ public:
+  Sampler(const Mesh& mesh, const SamplerOptions& options)
+      : mesh_(mesh), options_(options), voxels_(voxelize(mesh, options.depth, options.count)) {
+    const std::size_t cells = voxels_.cells.size();
+    states_.resize(cells);
+    places_.resize(cells * kPlaces);
+    number_of_.reserve(cells);
+    for (std::uint32_t i = 0; i < cells; ++i) number_of_.emplace(key(voxels_.cells[i]), i);
+    sampled_.resize(voxels_.triangles.size());
+    tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t i) {
+      states_[i].unsampled = static_cast<std::uint32_t>(voxels_.triangles_of(i).size());
+      const SampledCell cell = seen(i);
+      for (std::size_t p = 0; p < kPlaces; ++p) places_[i * kPlaces + p] = try_place(cell, p);
+    });
+    points_.reserve(options.count);
+    next_.reserve(options.count);
+  }
+
+  std::vector<MeshSample> run(const std::function<void(double)>& progress) {
+    constexpr std::size_t kReport = 4096;  // points between two
+    std::vector<Entry> entries;
+    entries.reserve(states_.size());
+    for (std::size_t i = 0; i < states_.size(); ++i) entries.push_back(entry(i));
+    std::priority_queue heap(std::less<>(), std::move(entries));
+    while (points_.size() < options_.count) {
+      if (progress && points_.size() % kReport == 0)
+        progress(static_cast<double>(points_.size()) / static_cast<double>(options_.count));
+      const std::uint32_t cell = heap.top().cell;
+      heap.pop();
+      take_point(cell);
+      heap.push(entry(cell));
+    }
+    return in_order();
+  }
+
+ private:
+  struct State {
+    std::uint32_t unsampled = 0;
+    std::uint32_t samples = 0;
+    std::uint32_t last = kNone;  // of its points; the others by next_
+  };
+
+  struct Entry {
+    double priority;
+    std::uint32_t tie;  // by chance, so that what is left over at the end does not lie side by side
+    std::uint32_t cell;
+    bool operator<(const Entry& other) const {
+      if (priority != other.priority) return priority < other.priority;
+      return tie != other.tie ? tie < other.tie : cell < other.cell;
+    }
+  };
+
+  static std::uint64_t key(const glm::uvec3& place) {
+    return place.x | std::uint64_t{place.y} << 21 | std::uint64_t{place.z} << 42;
+  }
+
+  SampledCell seen(std::size_t i) const {
+    return {voxels_.center(i),    voxels_.size,       voxels_.triangles_of(i),
+            states_[i].unsampled, states_[i].samples, i};
+  }
+
+  Entry entry(std::size_t i) const {
+    return {options_.priority(seen(i)), static_cast<std::uint32_t>(scramble(i)),
+            static_cast<std::uint32_t>(i)};
+  }
+
+  MeshSample try_place(const SampledCell& cell, std::size_t index) const {
+    const glm::dvec3 place = options_.distribution(cell, index) - 0.5;
+    return project(mesh_, cell, cell.center + place * cell.dimensions);
+  }
+
+  // Squared distance to the nearest point in this cell and those around it.
+  double room(const std::array<std::uint32_t, 27>& around, std::size_t count, const MeshSample& place) const {
+    double least = std::numeric_limits<double>::infinity();
+    const glm::dvec3 position(place.position);
+    for (std::size_t n = 0; n < count; ++n)
+      for (std::uint32_t p = states_[around[n]].last; p != kNone; p = next_[p])
+        least = std::min(least, distance2(glm::dvec3(points_[p].position), position));
+    return least;
+  }
+
+  // The cells around number i, itself among them, that have points.
+  std::size_t find_around(std::size_t i, std::array<std::uint32_t, 27>& around) const {
+    std::size_t count = 0;
+    const glm::uvec3 at = voxels_.cells[i];
+    for (unsigned z = 0; z < 3; ++z) {
+      for (unsigned y = 0; y < 3; ++y) {
+        for (unsigned x = 0; x < 3; ++x) {
+          const glm::uvec3 place = at + glm::uvec3(x, y, z) - 1u;  // below 0 wraps to where no cell is
+          const auto found = number_of_.find(key(place & 0x1fffffu));
+          if (found != number_of_.end() && states_[found->second].last != kNone)
+            around[count++] = found->second;
+        }
+      }
+    }
+    return count;
+  }
+
+  void take_point(std::uint32_t i) {
+    std::array<std::uint32_t, 27> around;
+    const std::size_t count = find_around(i, around);
+    MeshSample* best = nullptr;
+    double most = -1;
+    for (std::size_t p = 0; p < kPlaces; ++p) {
+      MeshSample& place = places_[i * kPlaces + p];
+      const double distance = room(around, count, place);
+      if (!(distance > most)) continue;
+      most = distance;
+      best = &place;
+    }
+    State& state = states_[i];
+    points_.push_back(*best);
+    next_.push_back(state.last);
+    state.last = static_cast<std::uint32_t>(points_.size() - 1);
+    ++state.samples;
+    mark_sampled(i, *best);
+    *best = try_place(seen(i), kPlaces + state.samples - 1);
+  }
+
+  void mark_sampled(std::uint32_t i, const MeshSample& point) {
+    State& state = states_[i];
+    if (state.unsampled == 0) return;
+    const auto triangles = voxels_.triangles_of(i);
+    const double reach = 0.5 * std::max({voxels_.size.x, voxels_.size.y, voxels_.size.z});
+    const glm::dvec3 position(point.position);
+    for (std::size_t n = 0; n < triangles.size(); ++n) {
+      char& sampled = sampled_[voxels_.first[i] + n];
+      if (sampled != 0) continue;
+      const Triangle t = triangle_of(mesh_, triangles[n]);
+      const bool near = distance2(point_at(t, closest_point(t, position)), position) < reach * reach;
+      if (!near && triangles[n] != point.triangle) continue;
+      sampled = 1;
+      --state.unsampled;
+    }
+  }
+
+  std::vector<MeshSample> in_order() const {
+    std::vector<MeshSample> out;
+    out.reserve(points_.size());
+    for (const State& state : states_)
+      for (std::uint32_t p = state.last; p != kNone; p = next_[p]) out.push_back(points_[p]);
+    return out;
+  }
+
+  const Mesh& mesh_;
+  const SamplerOptions& options_;
+  Voxels voxels_;
+  std::unordered_map<std::uint64_t, std::uint32_t> number_of_;  // of the cell at a place
+  std::vector<State> states_;
+  std::vector<char> sampled_;       // of voxels_.triangles
+  std::vector<MeshSample> places_;  // kPlaces a cell, ready to be taken
+  std::vector<MeshSample> points_;
+  std::vector<std::uint32_t> next_;  // point of the same cell
+};
+
+}  // namespace
+
+double unsampled_triangles(const SampledCell& cell) {
+  return cell.unsampled > 0 ? static_cast<double>(cell.unsampled) : -static_cast<double>(cell.samples);
+}
+
+// Roberts's R3: multiples of the powers of the root of x^4 = x + 1, modulo 1.
+glm::dvec3 even_distribution(const SampledCell& cell, std::size_t index) {
+  constexpr glm::dvec3 kStep{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  const std::uint64_t bits = scramble(~cell.number);
+  const glm::dvec3 shift =
+      glm::dvec3(bits & 0x1fffffu, bits >> 21 & 0x1fffffu, bits >> 42 & 0x1fffffu) / 2097152.0;
+  return glm::fract(shift + static_cast<double>(index + 1) * kStep);
+}
+
+std::vector<MeshSample> sample(const Mesh& mesh, const SamplerOptions& options,
+                               const std::function<void(double)>& progress) {
+  if (options.count == 0) return {};
+  return Sampler(mesh, options).run(progress);
+}
+
+}  // namespace splatscope::traces

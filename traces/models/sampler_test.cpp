@@ -1,0 +1,109 @@
+#include "traces/models/sampler.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "traces/models/parametric.h"
+#include "traces/models/triangle.h"
+#include "traces/models/voxels.h"
+
+namespace splatscope::traces {
+namespace {
+
+Mesh ball(int cells) {
+  Mesh mesh = sphere(cells, [](const glm::dvec3&) { return 1.0; });
+  mend(mesh);
+  return mesh;
+}
+
+std::vector<MeshSample> sample_count(const Mesh& mesh, std::size_t count) {
+  SamplerOptions options;
+  options.count = count;
+  return sample(mesh, options);
+}
+
+TEST(Sampler, GivesExactlyAsManyPointsAsAskedForOnTheSurface) {
+  const Mesh mesh = ball(8);
+  for (std::size_t count : {0u, 1u, 2u, 3u, 7u, 100u, 767u, 768u, 5000u}) {
+    const auto samples = sample_count(mesh, count);
+    ASSERT_EQ(samples.size(), count);
+    for (const MeshSample& s : samples) {
+      ASSERT_LT(s.triangle, mesh.triangles.size());
+      const glm::dvec3 p = point_at(triangle_of(mesh, s.triangle), s.weights);
+      ASSERT_LT(glm::distance(p, glm::dvec3(s.position)), 1e-6);
+      ASSERT_GE(std::min({s.weights.x, s.weights.y, s.weights.z}), -1e-12);
+    }
+  }
+}
+
+// Far more points than the tree can have cells, and than there are places tried at first.
+TEST(Sampler, GoesOnWhereTheTreeIsCutShort) {
+  const Mesh mesh = ball(8);
+  SamplerOptions options;
+  options.count = 1000;
+  options.depth = 3;
+  EXPECT_EQ(sample(mesh, options).size(), 1000u);
+}
+
+TEST(Sampler, DoesNotDependOnTheNumberOfThreads) {
+  const Mesh mesh = ball(32);
+  const auto many = sample_count(mesh, 4000);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const auto single = sample_count(mesh, 4000);
+  ASSERT_EQ(many.size(), single.size());
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    ASSERT_EQ(many[i].position, single[i].position);
+    ASSERT_EQ(many[i].triangle, single[i].triangle);
+  }
+}
+
+// Splatting wants no holes and no clusters: every place of the sphere has a point nearby, and few points lie
+// much closer together than the average.
+TEST(Sampler, SpreadsPointsEvenly) {
+  constexpr std::size_t kCount = 4000;
+  for (int cells : {3, 64}) {  // few large triangles, many small ones
+    const auto samples = sample_count(ball(cells), kCount);
+    const double spacing = std::sqrt(4 * 3.14159265358979 / kCount);  // of a square grid
+    std::size_t close = 0;
+    double furthest_neighbour = 0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      double nearest = 4;
+      for (std::size_t j = 0; j < kCount; ++j)
+        if (i != j)
+          nearest = std::min(nearest,
+                             glm::distance(glm::dvec3(samples[i].position), glm::dvec3(samples[j].position)));
+      close += nearest < 0.3 * spacing ? 1 : 0;
+      furthest_neighbour = std::max(furthest_neighbour, nearest);
+    }
+    EXPECT_LT(close, kCount / 20) << cells;
+    EXPECT_LT(furthest_neighbour, 1.8 * spacing) << cells;
+    const Mesh probes = ball(24);
+    for (const glm::vec3& probe : probes.positions) {
+      double nearest = 4;
+      for (const MeshSample& s : samples)
+        nearest = std::min(nearest, glm::distance(glm::normalize(glm::dvec3(s.position)), glm::dvec3(probe)));
+      ASSERT_LT(nearest, 1.6 * spacing) << cells << ": a hole";
+    }
+  }
+}
+
+TEST(Sampler, PriorityAndDistributionCanBeReplaced) {
+  const Mesh mesh = ball(16);
+  SamplerOptions options;
+  options.count = 500;
+  options.priority = [](const SampledCell& cell) { return cell.center.y > 0 ? 1.0 : 0.0; };
+  for (const MeshSample& s : sample(mesh, options)) EXPECT_GT(s.position.y, -0.3f);
+  options.priority = unsampled_triangles;
+  options.depth = 0;  // one cell, the whole ball: every place is projected from its corner
+  options.count = 1;
+  options.distribution = [](const SampledCell&, std::size_t) { return glm::dvec3(1, 1, 1); };
+  const auto corner = sample(mesh, options);
+  EXPECT_GT(glm::dot(glm::dvec3(corner[0].position), glm::normalize(glm::dvec3(1, 1, 1))), 0.98);
+}
+
+}  // namespace
+}  // namespace splatscope::traces

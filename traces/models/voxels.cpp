@@ -1,0 +1,109 @@
+#include "traces/models/voxels.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+namespace splatscope::traces {
+namespace {
+
+// A little larger than the mesh, and not the same on both sides: a face of a tidy model then does not lie
+// exactly between two cells, where it would fill both.
+Voxels root_of(const Mesh& mesh) {
+  glm::dvec3 low(mesh.positions[mesh.triangles.front()[0]]), high = low;
+  for (const auto& t : mesh.triangles) {
+    for (std::uint32_t corner : t) {
+      low = glm::min(low, glm::dvec3(mesh.positions[corner]));
+      high = glm::max(high, glm::dvec3(mesh.positions[corner]));
+    }
+  }
+  const double diagonal = glm::length(high - low);
+  Voxels root;
+  root.low = low - 0.0010 * diagonal;
+  root.size = high + 0.0023 * diagonal - root.low;
+  root.cells = {glm::uvec3(0)};
+  root.triangles.resize(mesh.triangles.size());
+  std::iota(root.triangles.begin(), root.triangles.end(), 0u);
+  root.first = {0, root.triangles.size()};
+  return root;
+}
+
+// Consecutive leaves of a level.
+struct Part {
+  std::vector<glm::uvec3> cells;
+  std::vector<std::size_t> counts;  // of triangles
+  std::vector<std::uint32_t> triangles;
+};
+
+// The halves of one cell that triangles overlap.
+void halve(const Mesh& mesh, const Voxels& parents, const Voxels& children, int axis, std::size_t cell,
+           Part& out) {
+  glm::uvec3 place = parents.cells[cell];
+  place[axis] *= 2;
+  const double middle = children.low[axis] + (place[axis] + 1) * children.size[axis];
+  for (unsigned side = 0; side < 2; ++side, ++place[axis]) {
+    const glm::dvec3 center = children.low + (glm::dvec3(place) + 0.5) * children.size;
+    const std::size_t before = out.triangles.size();
+    for (std::uint32_t number : parents.triangles_of(cell)) {
+      const Triangle t = triangle_of(mesh, number);
+      const auto [least, most] = std::minmax({t[0][axis], t[1][axis], t[2][axis]});
+      // It overlaps the cell: where it is on one side of the middle it overlaps that half.
+      const bool inside = side == 0 ? most < middle : least > middle;
+      const bool outside = side == 0 ? least > middle : most < middle;
+      if (inside || (!outside && overlaps(t, center, 0.5 * children.size))) out.triangles.push_back(number);
+    }
+    if (out.triangles.size() == before) continue;
+    out.cells.push_back(place);
+    out.counts.push_back(out.triangles.size() - before);
+  }
+}
+
+Voxels next_level(const Mesh& mesh, const Voxels& parents, int axis) {
+  Voxels children;
+  children.low = parents.low;
+  children.size = parents.size;
+  children.size[axis] *= 0.5;
+  constexpr std::size_t kCellsAPart = 256;  // parts of fixed size: their order is the leaves' order
+  std::vector<Part> parts((parents.cells.size() + kCellsAPart - 1) / kCellsAPart);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const std::size_t end = std::min((part + 1) * kCellsAPart, parents.cells.size());
+    for (std::size_t cell = part * kCellsAPart; cell < end; ++cell)
+      halve(mesh, parents, children, axis, cell, parts[part]);
+  });
+  children.first = {0};
+  for (Part& part : parts) {
+    children.cells.insert(children.cells.end(), part.cells.begin(), part.cells.end());
+    for (std::size_t count : part.counts) children.first.push_back(children.first.back() + count);
+    children.triangles.insert(children.triangles.end(), part.triangles.begin(), part.triangles.end());
+    part = {};
+  }
+  return children;
+}
+
+}  // namespace
+
+Triangle triangle_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
+          glm::dvec3(mesh.positions[t[2]])};
+}
+
+Voxels voxelize(const Mesh& mesh, int depth, std::size_t most_cells) {
+  Voxels voxels = root_of(mesh);
+  const std::size_t most_entries = 32 * (mesh.triangles.size() + most_cells);
+  int halvings[3] = {};
+  for (int level = 0; level < depth; ++level) {
+    const glm::dvec3& size = voxels.size;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    if (++halvings[axis] > kMostHalvings) break;
+    Voxels children = next_level(mesh, voxels, axis);
+    if (children.cells.size() > most_cells || children.triangles.size() > most_entries) break;
+    voxels = std::move(children);
+  }
+  return voxels;
+}
+
+}  // namespace splatscope::traces
