@@ -13,7 +13,7 @@ namespace {
 
 constexpr glm::dvec3 kFrom{0.55, 0.4, 1};  // direction from the target to the eye
 constexpr double kFieldOfView = 30;        // degrees
-constexpr double kMargin = 1.06;           // of the distance
+constexpr double kFilled = 0.95;           // of half the frame's width or height
 constexpr double kClosest = 1e-3;          // near plane, in units of the far plane's distance
 
 // Axes of a camera: right, up, ahead.
@@ -70,10 +70,10 @@ void frame_camera(std::span<const Surfel> surfels, const Frame& frame, const Cam
       for (const Surfel& s : surfels) seen.add(axes.of(glm::dvec3(s.position) - camera.target));
       camera.target += seen.middle().x * axes.right + seen.middle().y * axes.up;
     }
-    const double tangent = std::tan(camera.fov_y_degrees * std::numbers::pi / 360);
+    const double tangent = kFilled * std::tan(camera.fov_y_degrees * std::numbers::pi / 360);
     const double distance =
         fitting_distance(surfels, axes, camera.target, {tangent * frame.width / frame.height, tangent});
-    camera.eye = camera.target - kMargin * (distance > 0 ? distance : 1) * axes.ahead;
+    camera.eye = camera.target - (distance > 0 ? distance : 1) * axes.ahead;
   }
   if (glm::length(camera.target - camera.eye) == 0) return;  // refused later
   const Axes axes(camera.target - camera.eye, camera.up);

@@ -33,10 +33,10 @@ const std::array kKeys = {
     SceneKey{"surfels", "file", "",
              "surfel file (PLY) or mesh, relative to the scene file; empty: `generator` makes them",
              TextValue{[](S& s) -> std::string& { return s.surfels.file; }, ""}},
-    SceneKey{
-        "surfels", "generator", "", "what makes the surfels where no file is given",
-        ChoiceValue{
-            [](S& s, int i) { s.surfels.generator = Generator(i); }, {"plane", "sphere", "torus-knot"}, 0}},
+    SceneKey{"surfels", "generator", "", "what makes the surfels where no file is given",
+             ChoiceValue{[](S& s, int i) { s.surfels.generator = Generator(i); },
+                         {"plane", "sphere", "torus-knot", "salamander", "chameleon", "wasp", "fiesta"},
+                         0}},
     SceneKey{"surfels", "columns", "surfels", "of the plane y = 0, along x, one unit apart, centred",
              IntegerValue{[](S& s) -> int& { return s.surfels.columns; }, 256, 1, 4096}},
     SceneKey{"surfels", "rows", "surfels", "of the plane, along z",

@@ -13,7 +13,7 @@
 // Every key of a scene file, declared once: parsing, error messages and the documentation come from it.
 namespace splatscope::traces {
 
-enum class Generator { plane, sphere, torus_knot };
+enum class Generator { plane, sphere, torus_knot, salamander, chameleon, wasp, fiesta };
 
 struct SurfelSource {
   std::string file;  // empty: the generator

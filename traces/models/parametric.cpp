@@ -44,7 +44,7 @@ Mesh torus_knot(int steps, int sides) {
   const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(i % steps * sides + j % sides); };
   for (int i = 0; i < steps; ++i)
     for (int j = 0; j < sides; ++j)
-      add_quad(mesh, vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+      add_quad(mesh, vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1), vertex(i + 1, j));
   return mesh;
 }
 

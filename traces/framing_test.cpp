@@ -1,0 +1,70 @@
+#include "traces/framing.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "traces/scene.h"
+#include "traces/splat_trace.h"
+
+namespace splatscope::traces {
+namespace {
+
+std::vector<Surfel> any_surfels() {
+  const auto coordinate = [](int reach) { return static_cast<float>(*rc::gen::inRange(-reach, reach + 1)); };
+  const int x = *rc::gen::element(1, 10, 1000), y = *rc::gen::element(1, 10, 1000),
+            z = *rc::gen::element(1, 10, 1000);
+  std::vector<Surfel> surfels(static_cast<std::size_t>(*rc::gen::inRange(2, 40)));
+  for (Surfel& s : surfels) {
+    s.position.x = 500 + coordinate(x);
+    s.position.y = coordinate(y);
+    s.position.z = coordinate(z);
+    s.radius = 0.1f;
+  }
+  return surfels;
+}
+
+// All within the frame and between the planes; the one furthest out is near the frame's edge.
+RC_GTEST_PROP(Framing, EverySurfelIsSeenAndTheFrameIsFilled, ()) {
+  const std::vector<Surfel> surfels = any_surfels();
+  const Frame frame{*rc::gen::element(100, 400), *rc::gen::element(100, 300)};
+  Camera camera;
+  frame_camera(surfels, frame, {}, camera);
+  RC_ASSERT(camera.near > 0 && camera.near < camera.far);
+  const kernels::View view = view_of(camera, frame);
+  double furthest = 0;
+  for (const Surfel& s : surfels) {
+    const glm::dvec3 p = view.camera_space(glm::dvec3(s.position));
+    RC_ASSERT(p.z > camera.near && p.z < camera.far);
+    const double r = s.radius;
+    for (const glm::dvec3& off : {glm::dvec3(r, 0, 0), {-r, 0, 0}, {0, r, 0}, {0, -r, 0}}) {
+      const glm::dvec2 window = view.window(p + off);
+      furthest = std::max(
+          {furthest, std::abs(2 * window.x / frame.width - 1), std::abs(2 * window.y / frame.height - 1)});
+    }
+  }
+  RC_ASSERT(furthest < 1);
+  RC_ASSERT(furthest > 0.9);
+}
+
+TEST(Framing, WhatIsGivenStays) {
+  const Scene scene = parse_scene(
+      "[surfels]\ngenerator = \"sphere\"\ncount = 200\n[camera]\neye = [0, 0, 9]\nfar = 50\n", "s.toml");
+  EXPECT_EQ(scene.camera.eye, glm::dvec3(0, 0, 9));
+  EXPECT_EQ(scene.camera.far, 50);
+  EXPECT_NEAR(scene.camera.target.x, 0, 0.2) << "the middle of the surfels";
+  EXPECT_GT(scene.camera.near, 7);
+  EXPECT_LT(scene.camera.near, 8.2) << "just before them";
+}
+
+TEST(Framing, ThePlaneKeepsItsCamera) {
+  const Scene scene = parse_scene("[surfels]\ncolumns = 4\nrows = 4\n", "s.toml");
+  EXPECT_EQ(scene.camera.eye, glm::dvec3(0, 70, 225));
+  EXPECT_EQ(scene.camera.far, 1000);
+}
+
+}  // namespace
+}  // namespace splatscope::traces

@@ -1,0 +1,173 @@
+#include "traces/models/mesh_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <glm/common.hpp>
+
+#include "model/error.h"
+#include "traces/point_file.h"
+#include "traces/scene.h"
+
+namespace splatscope::traces {
+namespace {
+
+class MeshFileTest : public testing::Test {
+ protected:
+  ~MeshFileTest() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path file(const std::string& name, std::string_view text) const {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  Scene scene_of(const std::string& name, std::string_view text,
+                 std::string_view keys = "count = 50\n") const {
+    file(name, text);
+    return parse_scene(fmt::format("[surfels]\nfile = \"{}\"\n{}", name, keys), folder_ / "s.toml");
+  }
+  std::string error_of(const std::string& name, std::string_view text) const {
+    try {
+      scene_of(name, text);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / fmt::format("splatscope-mesh-{}", ::getpid());
+};
+
+constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+TEST_F(MeshFileTest, PolygonsBecomeSurfels) {
+  const Scene scene = scene_of("square.obj", kSquare);
+  EXPECT_EQ(scene.surfels.size(), 50u);
+  EXPECT_EQ(scene.mesh.triangles, 2u);
+  EXPECT_GT(scene.mesh.normals_computed, 0u);
+  for (const Surfel& s : scene.surfels) {
+    EXPECT_EQ(s.normal, glm::vec3(0, 0, 1));
+    EXPECT_EQ(s.position.z, 0);
+    EXPECT_TRUE(s.position.x >= 0 && s.position.x <= 1 && s.position.y >= 0 && s.position.y <= 1);
+  }
+}
+
+TEST_F(MeshFileTest, APlyWithFacesIsAMeshAndOneWithoutIsPoints) {
+  const std::string_view head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string_view vertices = "0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 0\n";
+  const Scene mesh = scene_of(
+      "m.ply",
+      fmt::format("{}element face 1\nproperty list uchar int vertex_indices\nend_header\n{}3 0 1 2\n", head,
+                  vertices),
+      "count = 50\nshading = 0\n");
+  ASSERT_EQ(mesh.surfels.size(), 50u);
+  EXPECT_EQ(mesh.surfels[0].color, glm::vec3(1, 0, 0)) << "the vertices' colour";
+  const Scene points = scene_of("p.ply", fmt::format("{}end_header\n{}", head, vertices));
+  EXPECT_EQ(points.surfels.size(), 3u);
+  EXPECT_EQ(points.mesh.triangles, 0u);
+}
+
+// 2 x 2 texels: red, green above, blue, white below. Each corner of the square has one of them.
+TEST_F(MeshFileTest, ColoursComeFromTheTexture) {
+  file("t.ppm", std::string_view("P6\n2 2\n255\n\xff\0\0\0\xff\0\0\0\xff\xff\xff\xff", 23));
+  file("m.mtl", "newmtl skin\nKd 0.5 0.5 0.5\nmap_Kd t.ppm\n");
+  const std::string mesh =
+      "mtllib m.mtl\nusemtl skin\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 "
+      "2/2 3/3 4/4\n";
+  const Scene scene = scene_of("m.obj", mesh, "count = 400\nshading = 0\n");
+  EXPECT_EQ(scene.mesh.textures_unreadable, 0u);
+  std::size_t looked_at = 0;
+  for (const Surfel& s : scene.surfels) {
+    const glm::vec2 off = glm::abs(glm::vec2(s.position.x, s.position.y) - 0.5f);
+    if (std::abs(off.x - 0.25f) > 0.06f || std::abs(off.y - 0.25f) > 0.06f) continue;
+    ++looked_at;
+    const bool right = s.position.x > 0.5f, top = s.position.y > 0.5f;
+    const glm::vec3 texel = top ? (right ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0))
+                                : (right ? glm::vec3(1, 1, 1) : glm::vec3(0, 0, 1));
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(s.color[i], texel[i], 0.25) << s.position.x << ' ' << s.position.y;
+  }
+  EXPECT_GT(looked_at, 4u);
+  std::filesystem::remove(folder_ / "t.ppm");
+  const Scene without = scene_of("m.obj", mesh, "count = 10\nshading = 0\n");
+  EXPECT_EQ(without.mesh.textures_unreadable, 1u);
+  EXPECT_EQ(without.surfels[0].color, glm::vec3(0.5f)) << "the material's colour stands in";
+}
+
+TEST_F(MeshFileTest, PatternsAreFunctionsOfThePlace) {
+  const Scene scene = scene_of("square.obj", kSquare,
+                               "count = 300\npattern = \"stripes\"\npattern_scale = 0.3\nshading = 0\n");
+  std::vector<glm::vec3> colors;
+  for (const Surfel& s : scene.surfels) colors.push_back(s.color);
+  for (std::size_t i = 1; i < colors.size(); ++i)
+    EXPECT_TRUE(scene.surfels[i].position.y != scene.surfels[0].position.y || colors[i] == colors[0]);
+  std::ranges::sort(colors, {}, [](const glm::vec3& c) { return c.y; });
+  EXPECT_NE(colors.front(), colors.back());
+}
+
+TEST_F(MeshFileTest, BrokenTrianglesAreCounted) {
+  const Scene scene =
+      scene_of("broken.ply",
+               "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+               "property float z\nelement face 5\nproperty list uchar int vertex_indices\nend_header\n"
+               "0 0 0\n1 0 0\n1 1 0\nnan 0 0\n2 0 0\n0 1 0\n"
+               "3 0 1 2\n3 0 1 4\n3 0 1 3\n3 0 1 77\n3 0 2 5\n");
+  EXPECT_EQ(scene.surfels.size(), 50u);
+  EXPECT_EQ(scene.mesh.triangles, 2u);
+  EXPECT_EQ(scene.mesh.triangles_degenerate, 1u);
+  EXPECT_EQ(scene.mesh.triangles_not_finite, 1u);
+  EXPECT_EQ(scene.mesh.triangles_out_of_range, 1u);
+}
+
+TEST_F(MeshFileTest, WhatIsNoMeshIsTheUsersError) {
+  EXPECT_NE(error_of("x.obj", "v 0 0 0\nv 1 0 0\n").find("x.obj: "), std::string::npos);
+  EXPECT_NE(error_of("x.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").find("no triangle of it has a surface"),
+            std::string::npos);
+  EXPECT_NE(error_of("x.nonsense", "1").find("no ending that assimp knows"), std::string::npos);
+  EXPECT_NE(error_of("x.stl", "").find("x.stl: "), std::string::npos);
+  EXPECT_NE(error_of("x.off", "OFF\n4000000000 4000000000 0\n0 0 0\n").find("do not fit"), std::string::npos);
+  EXPECT_NE(
+      error_of(
+          "x.ply",
+          "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+          "property float z\nelement face 4000000000\nproperty list uchar int vertex_indices\nend_header\n")
+          .find("do not fit"),
+      std::string::npos);
+  EXPECT_THROW(read_mesh(folder_ / "none.obj"), UserError);
+  EXPECT_THROW(read_mesh(folder_), UserError);
+}
+
+// Every beginning of a good file: an error or a picture of what there is, never a crash.
+TEST_F(MeshFileTest, TruncatedFilesAreHarmless) {
+  const std::string_view off = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+  for (const auto& [name, text] : {std::pair("x.obj", kSquare), std::pair("x.off", off)}) {
+    std::size_t wrong = 0;
+    for (std::size_t size = 0; size < text.size(); ++size)
+      wrong += error_of(name, text.substr(0, size)) != "no error";
+    EXPECT_GT(wrong, text.size() / 3) << name;
+  }
+}
+
+TEST_F(MeshFileTest, WrittenSurfelsAreReadBack) {
+  const Scene scene = scene_of("square.obj", kSquare);
+  write_ply(scene.surfels, folder_ / "out.ply");
+  const PointFile read = read_ply(folder_ / "out.ply");
+  EXPECT_TRUE(read.has_normals && read.has_radii);
+  ASSERT_EQ(read.surfels.size(), scene.surfels.size());
+  for (std::size_t i = 0; i < read.surfels.size(); ++i) {
+    EXPECT_EQ(read.surfels[i].position, scene.surfels[i].position);
+    EXPECT_EQ(read.surfels[i].normal, scene.surfels[i].normal);
+    EXPECT_EQ(read.surfels[i].radius, scene.surfels[i].radius);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(read.surfels[i].color[c], scene.surfels[i].color[c], 0.5 / 255 + 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::traces
