@@ -45,7 +45,9 @@ void add_sample_command(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1, 1 << 24));
   command->add_option("-o", options->out, "surfel file to write (PLY)")->required();
   command->add_option("--pattern", source.pattern, "solid pattern; own: the colours that the mesh has")
-      ->transform(CLI::CheckedTransformer(patterns))
+      ->transform(CLI::CheckedTransformer(patterns).description(
+          fmt::format("{}", fmt::join(traces::pattern_names(), "|"))))
+      ->type_name("TEXT")
       ->default_str("own");
   command
       ->add_option("--pattern-scale", source.pattern_scale,
