@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
@@ -14,6 +17,7 @@ namespace {
 
 struct Options {
   traces::SurfelSource source = traces::default_settings().surfels;
+  std::string pattern = "own";
   std::string out;
 };
 
@@ -35,20 +39,16 @@ void add_sample_command(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("sample", "a mesh as a file of surfels");
   const auto options = std::make_shared<Options>();
   traces::SurfelSource& source = options->source;
-  std::map<std::string, traces::Pattern> patterns;
-  for (std::string_view name : traces::pattern_names())
-    patterns.emplace(name, static_cast<traces::Pattern>(patterns.size()));
+  const auto names = traces::pattern_names();
   command->add_option("MESH", source.file, "any mesh that assimp reads: .obj, .off, .ply, .stl, .gltf, ...")
       ->required();
   command->add_option("-n", source.count, "surfels, exactly")
       ->default_val(traces::kMeshSurfels)
       ->check(CLI::Range(1, 1 << 24));
   command->add_option("-o", options->out, "surfel file to write (PLY)")->required();
-  command->add_option("--pattern", source.pattern, "solid pattern; own: the colours that the mesh has")
-      ->transform(CLI::CheckedTransformer(patterns).description(
-          fmt::format("{}", fmt::join(traces::pattern_names(), "|"))))
-      ->type_name("TEXT")
-      ->default_str("own");
+  command->add_option("--pattern", options->pattern, "solid pattern; own: the colours that the mesh has")
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+      ->capture_default_str();
   command
       ->add_option("--pattern-scale", source.pattern_scale,
                    "size of a square, stripe or spot, in radii of the model")
@@ -58,7 +58,11 @@ void add_sample_command(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->footer("Example: splatscope sample models/bunny.obj -n 50000 --pattern checker -o bunny.ply");
-  command->callback([options, &invocation] { sample(*options, invocation.quiet); });
+  command->callback([=, &invocation] {
+    const auto chosen = std::ranges::find(names, options->pattern) - names.begin();
+    options->source.pattern = static_cast<traces::Pattern>(chosen);
+    sample(*options, invocation.quiet);
+  });
 }
 
 }  // namespace splatscope::app
