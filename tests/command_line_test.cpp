@@ -26,7 +26,7 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
       {"record"},          {"trace", "info"},      {"scene", "keys"},
       {"machine", "list"}, {"machine", "show"},    {"shader", "check"},
       {"shader", "count"}, {"shader", "assemble"}, {"shader", "disassemble"},
-      {"shader", "debug"}, {"shader", "run"}};
+      {"shader", "debug"}, {"shader", "run"},      {"sample"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = run_program(command);
@@ -53,6 +53,32 @@ TEST(CommandLine, TraceThatIsNone) {
   expect_refused(run_program({"trace", "info", "none.trace"}, folder.path()), "none.trace: ");
   folder.file("a.trace", "no trace at all");
   expect_refused(run_program({"trace", "info", "a.trace"}, folder.path()), "a.trace: is no trace");
+}
+
+constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 1 2\n";
+
+TEST(CommandLine, SampleMakesASceneOfAMesh) {
+  const ScratchFolder folder;
+  folder.file("square.obj", kSquare);
+  const Outcome sampled =
+      run_program({"sample", "square.obj", "-n", "123", "-o", "s.ply", "--quiet"}, folder.path());
+  EXPECT_EQ(sampled.status, 0) << sampled.error;
+  EXPECT_NE(sampled.out.find("s.ply: 123 surfels from 2 triangles, 1 left out"), std::string::npos)
+      << sampled.out;
+  folder.file("s.toml", "[surfels]\nfile = \"s.ply\"\n[frame]\nwidth = 16\nheight = 16\n");
+  const Outcome drawn = run_program({"run", "s.toml", "--fidelity", "functional"}, folder.path());
+  EXPECT_NE(drawn.out.find("123 surfels, none left out"), std::string::npos) << drawn.out << drawn.error;
+}
+
+TEST(CommandLine, SampleRefusesWhatItCannotUse) {
+  const ScratchFolder folder;
+  folder.file("square.obj", kSquare);
+  expect_refused(run_program({"sample", "none.obj", "-o", "s.ply"}, folder.path()), "none.obj: ");
+  expect_refused(run_program({"sample", "square.obj", "-o", "none/s.ply"}, folder.path()), "none/s.ply: ");
+  expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", "--pattern", "tartan"}, folder.path()),
+                 "tartan not in {own,plain,checker");
+  expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", "-n", "0"}, folder.path()), "-n: ");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "s.ply"));
 }
 
 struct BadScene {
