@@ -1,170 +1,121 @@
 #include "model/draw.h"
 
-#include <bit>
-#include <cstring>
+#include <oneapi/tbb/parallel_pipeline.h>
 
-#include "model/output/output.h"
-#include "model/vertex/vertex_fetch.h"
+#include <bit>
+#include <memory>
+
+#include "model/fragment_pipe.h"
+#include "model/geometry.h"
 
 namespace splatscope {
 namespace {
 
-constexpr int kCorners = 3;
+constexpr std::size_t kBatchesInFlight = 4;
 
-// One triangle waiting for its vertices: where each corner stands in the order of shading.
-struct PendingTriangle {
-  std::array<std::uint32_t, kCorners> sequence;
-};
-
-// The post-transform FIFO and the shading of what misses it, a batch at a time.
-class VertexStage {
+// Everything behind the setup, triangle by triangle.
+class RasterStage {
  public:
-  VertexStage(const DrawBindings& bindings, int cache_entries)
-      : bindings_(bindings),
-        cache_entries_(static_cast<std::uint32_t>(cache_entries)),
-        inserted_(bindings.vertices.bytes.size() / bindings.draw.vertex_stride, 0),
-        ring_(std::bit_ceil(static_cast<std::size_t>(vertex::kBatch + cache_entries + kCorners))) {}
-
-  bool full() const { return batch_.size() + kCorners > vertex::kBatch; }
-  std::span<const std::uint32_t> batch() const { return batch_; }
-
-  // The place of a vertex in the order of shading; `fresh` counts up where it is not in the FIFO and joins
-  // the batch.
-  std::uint32_t find_or_add(std::uint32_t vertex_number, std::uint8_t& fresh) {
-    std::uint32_t& inserted = inserted_[vertex_number];  // 0: never, else 1 + its place
-    if (inserted != 0 && next_ - (inserted - 1) <= cache_entries_) return inserted - 1;
-    ++fresh;
-    batch_.push_back(vertex_number);
-    inserted = ++next_;
-    return next_ - 1;
-  }
-
-  void shade_batch() {
-    vertex::fetch(bindings_.draw.attributes, bindings_.vertices.bytes, bindings_.draw.vertex_stride, batch_,
-                  input_);
-    bindings_.vertex.run(bindings_.draw.constants, input_, output_, static_cast<int>(batch_.size()));
-    const std::uint32_t first = next_ - static_cast<std::uint32_t>(batch_.size());
-    for (std::uint32_t i = 0; i < batch_.size(); ++i) store(first + i, i);
-    batch_.clear();
-  }
-
-  const primitive::ClipVertex& operator[](std::uint32_t sequence) const {
-    return ring_[sequence & (ring_.size() - 1)];
-  }
-
- private:
-  void store(std::uint32_t sequence, std::uint32_t lane) {
-    primitive::ClipVertex& vertex = ring_[sequence & (ring_.size() - 1)];
-    for (int c = 0; c < 4; ++c) vertex.position[c] = output_.o[vertex::oPos][c][lane];
-    for (const int attribute : bindings_.attributes) {
-      const int output = vertex::oD0 + attribute;  // both orders are D0, D1, T0, T1, ...
-      for (int c = 0; c < 4; ++c) {
-        const float value = output_.o[output][c][lane];
-        const bool color = attribute <= primitive::kSpecular;  // saturated on the way out of the vertex unit
-        vertex.attributes[attribute][c] = color ? output::saturate(value) : value;
-      }
-    }
-  }
-
-  const DrawBindings& bindings_;
-  std::uint32_t cache_entries_;
-  std::vector<std::uint32_t> inserted_;
-  std::vector<primitive::ClipVertex> ring_;
-  std::vector<std::uint32_t> batch_;
-  std::uint32_t next_ = 0;
-  vertex::InputBatch input_{};
-  vertex::OutputBatch output_{};
-};
-
-std::uint32_t index_at(const Buffer& indices, std::uint32_t position) {
-  std::uint16_t index;
-  std::memcpy(&index, indices.bytes.data() + std::size_t{position} * sizeof index, sizeof index);
-  return index;
-}
-
-// Everything behind the vertex stage, triangle by triangle.
-class TriangleStage {
- public:
-  TriangleStage(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
-                RenderCounters& counters)
-      : bindings_(bindings),
-        options_(options),
-        frame_(frame),
+  RasterStage(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
+              RenderCounters& counters)
+      : state_(bindings.draw.state),
+        record_(options.record_work),
         work_(work),
         counters_(counters),
-        fragments_(bindings, frame),
-        viewport_{frame.width, frame.height} {}
+        fragments_(bindings, frame, record_ ? &work : nullptr),
+        depth_{frame.depth,
+               {frame.width, frame.height},
+               frame.formats.depth,
+               state_.depth_test,
+               state_.depth_write} {}
 
-  void draw(const primitive::ClipTriangle& triangle, TriangleWork& work) {
-    const primitive::Assembled assembled =
-        primitive::assemble(triangle, viewport_, bindings_.attributes, pieces_);
-    work.outcome = assembled.outcome;
-    const int kept = drop_culled(assembled.pieces);
-    if (kept == 0 && assembled.pieces != 0) work.outcome = TriangleOutcome::back_facing;
-    work.pieces = static_cast<std::uint8_t>(kept);
-    for (int piece = 0; piece < kept; ++piece) rasterize(pieces_[piece], work);
-    if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
-      work.outcome = TriangleOutcome::no_coverage;
-    count(work);
+  void draw(const GeometryBatch& batch) {
+    counters_.vertices += batch.shaded_vertices.size();
+    if (record_) {
+      work_.shaded_vertices.insert(work_.shaded_vertices.end(), batch.shaded_vertices.begin(),
+                                   batch.shaded_vertices.end());
+    }
+    std::size_t piece = 0;
+    for (const BatchTriangle& triangle : batch.triangles) {
+      draw(triangle, batch, piece);
+      piece += triangle.pieces;
+    }
+    fragments_.end();
   }
 
   void finish() { fragments_.flush(); }
 
  private:
-  // Moves the pieces that face the viewer to the front; returns how many. What decides is the sign on the
-  // grid that decides coverage, so a triangle that is dropped and its neighbour that is not never share a
-  // pixel.
-  int drop_culled(int pieces) {
-    const CullMode cull = bindings_.draw.state.cull;
-    if (cull == CullMode::none) return pieces;
-    const int dropped = cull == CullMode::clockwise ? 1 : -1;
-    const int bits = options_.formats.subpixel_bits;
-    int kept = 0;
-    for (int piece = 0; piece < pieces; ++piece) {
-      if (raster::winding(pieces_[piece], bits, raster::driver_rounding(bits)) != dropped) {
-        pieces_[kept++] = pieces_[piece];
-      }
+  // Whether the draw's cull mode drops a piece. What decides is the sign on the grid that decides coverage,
+  // so a triangle that is dropped and its neighbour that is not never share a pixel.
+  bool culled(const Piece& piece) const {
+    switch (state_.cull) {
+      case CullMode::clockwise:
+        return piece.setup.winding > 0;
+      case CullMode::counter_clockwise:
+        return piece.setup.winding < 0;
+      case CullMode::none:
+        break;
     }
-    return kept;
+    return false;
   }
 
-  void rasterize(const primitive::WindowTriangle& triangle, TriangleWork& work) {
-    const raster::TriangleSetup setup =
-        raster::set_up(triangle, viewport_, options_.formats.subpixel_bits,
-                       raster::driver_rounding(options_.formats.subpixel_bits));
-    work.tile_count += raster::tiles_touched(setup);
-    raster::for_each_quad(setup, [&](int x, int y, unsigned covered) {
-      const unsigned passed = test_depth(setup, x, y, covered);
-      int blocks = 0;
-      if (!options_.record_work) work_.texel_blocks.clear();
-      if (passed != 0 && bindings_.draw.state.color_write) {
-        blocks = fragments_.push_quad(setup, triangle, x, y, passed, work_.texel_blocks);
-      }
-      if (options_.record_work) {
-        work_.quads.push_back({static_cast<std::uint16_t>(x / 2), static_cast<std::uint16_t>(y / 2),
-                               static_cast<std::uint8_t>(covered), static_cast<std::uint8_t>(passed),
-                               static_cast<std::uint8_t>(blocks)});
-      }
-      ++work.quad_count;
-      counters_.fragments += static_cast<unsigned>(std::popcount(covered));
-      counters_.fragments_passed += static_cast<unsigned>(std::popcount(passed));
-    });
+  // `first`: of its pieces in the batch.
+  void draw(const BatchTriangle& triangle, const GeometryBatch& batch, std::size_t first) {
+    TriangleWork work;
+    work.outcome = triangle.outcome;
+    work.new_vertices = triangle.new_vertices;
+    work.pieces = 0;
+    for (std::size_t i = 0; i < triangle.pieces; ++i) {
+      const Piece piece = batch.piece(first + i);
+      if (culled(piece)) continue;
+      ++work.pieces;
+      if (piece.setup.covers) rasterize(piece, work);
+    }
+    if (work.pieces == 0 && triangle.pieces != 0) work.outcome = TriangleOutcome::back_facing;
+    if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
+      work.outcome = TriangleOutcome::no_coverage;
+    count(work);
+    if (record_) work_.triangles.push_back(work);
   }
 
-  unsigned test_depth(const raster::TriangleSetup& setup, int x, int y, unsigned covered) {
-    const DrawState& state = bindings_.draw.state;
-    if (!state.depth_test && !state.depth_write) return covered;
-    unsigned passed = 0;
-    for (unsigned bit = 0; bit < 4; ++bit) {
-      if ((covered >> bit & 1u) == 0) continue;
-      const int px = x + static_cast<int>(bit & 1u), py = y + static_cast<int>(bit >> 1);
-      const float z = setup.depth.at(static_cast<float>(px - setup.left), static_cast<float>(py - setup.top));
-      const std::size_t pixel = static_cast<std::size_t>(py) * frame_.width + static_cast<std::size_t>(px);
-      if (output::test_depth(output::quantize_depth(z, frame_.formats.depth), pixel, state, frame_)) {
-        passed |= 1u << bit;
+  void rasterize(const Piece& piece, TriangleWork& work) {
+    work.tile_count += raster::tiles_touched(piece.setup);
+    fragments_.begin(piece.setup, piece.corners);
+    for (int y = piece.setup.top & ~1; y < piece.setup.bottom; y += raster::kWindow) {
+      const raster::BandCounts counts = raster::rasterize_band(piece.setup, depth_, y, windows_);
+      counters_.fragments += counts.covered;
+      counters_.fragments_passed += counts.passed;
+      work.quad_count += counts.quads;
+      if (record_ || state_.color_write) pass_quads(std::span(windows_).first(counts.windows));
+    }
+    fragments_.end();
+  }
+
+  // The quads of a band in their order, which is that of rows: through all windows first.
+  void pass_quads(std::span<const raster::Window> windows) {
+    for (unsigned row = 0; row < raster::kWindow / 2; ++row) {
+      for (const raster::Window& window : windows) {
+        auto left = static_cast<unsigned>((record_ ? window.covered : window.passed) >> 16 * row & 0xffffu);
+        while (left != 0) {
+          const unsigned column = static_cast<unsigned>(std::countr_zero(left)) / 4;
+          left &= ~(0xfu << 4 * column);
+          pass_quad(window, row, column);
+        }
       }
     }
-    return passed;
+  }
+
+  void pass_quad(const raster::Window& window, unsigned row, unsigned column) {
+    const unsigned bit = 16 * row + 4 * column;
+    const int x = window.x + static_cast<int>(2 * column), y = window.y + static_cast<int>(2 * row);
+    const auto passed = static_cast<unsigned>(window.passed >> bit & 0xfu);
+    if (record_) {
+      work_.quads.push_back({static_cast<std::uint16_t>(x / 2), static_cast<std::uint16_t>(y / 2),
+                             static_cast<std::uint8_t>(window.covered >> bit & 0xfu),
+                             static_cast<std::uint8_t>(passed), 0});
+    }
+    if (passed != 0 && state_.color_write) fragments_.push_quad(x, y, passed);
   }
 
   void count(const TriangleWork& work) {
@@ -178,57 +129,47 @@ class TriangleStage {
     counters_.triangles_clipped += work.pieces > 1;
   }
 
-  const DrawBindings& bindings_;
-  const RenderOptions& options_;
-  Frame& frame_;
+  const DrawState& state_;
+  bool record_;
   DrawWork& work_;
   RenderCounters& counters_;
   FragmentPipe fragments_;
-  primitive::Viewport viewport_;
-  std::array<primitive::WindowTriangle, primitive::kMaxPieces> pieces_;
+  raster::DepthTarget depth_;
+  std::array<raster::Window, raster::kMaxWindows> windows_;
 };
 
 }  // namespace
 
+// Geometry of several batches at once, rasterised one after the other: the same bits from any number of
+// threads.
 void render_draw(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
                  RenderCounters& counters) {
-  TriangleStage triangle_stage(bindings, options, frame, work, counters);
-  VertexStage vertex_stage(bindings, options.vertex_cache_entries);
-  std::vector<PendingTriangle> pending;
-  std::vector<TriangleWork> pending_work;
-
-  const auto drain = [&] {
-    counters.vertices += vertex_stage.batch().size();
-    if (options.record_work) {
-      work.shaded_vertices.insert(work.shaded_vertices.end(), vertex_stage.batch().begin(),
-                                  vertex_stage.batch().end());
-    }
-    vertex_stage.shade_batch();
-    for (std::size_t i = 0; i < pending.size(); ++i) {
-      const auto& [a, b, c] = pending[i].sequence;
-      triangle_stage.draw({vertex_stage[a], vertex_stage[b], vertex_stage[c]}, pending_work[i]);
-    }
-    if (options.record_work)
-      work.triangles.insert(work.triangles.end(), pending_work.begin(), pending_work.end());
-    pending.clear();
-    pending_work.clear();
+  Indices indices(bindings, options.vertex_cache_entries);
+  RasterStage raster_stage(bindings, options, frame, work, counters);
+  const auto make_batch = [&] {
+    return std::make_unique<GeometryBatch>(bindings, options, primitive::Viewport{frame.width, frame.height});
   };
-
-  const Draw& draw = bindings.draw;
-  for (std::uint32_t i = 0; i + kCorners <= draw.index_count; i += kCorners) {
-    if (vertex_stage.full()) drain();
-    PendingTriangle triangle;
-    TriangleWork triangle_work;
-    for (std::uint32_t corner = 0; corner < kCorners; ++corner) {
-      const std::uint32_t vertex =
-          draw.base_vertex + index_at(bindings.indices, draw.first_index + i + corner);
-      triangle.sequence[corner] = vertex_stage.find_or_add(vertex, triangle_work.new_vertices);
-    }
-    pending.push_back(triangle);
-    pending_work.push_back(triangle_work);
-  }
-  drain();
-  triangle_stage.finish();
+  std::array<std::unique_ptr<GeometryBatch>, kBatchesInFlight> batches;
+  std::size_t next = 0;
+  using tbb::filter_mode;
+  tbb::parallel_pipeline(
+      kBatchesInFlight,
+      tbb::make_filter<void, GeometryBatch*>(filter_mode::serial_in_order,
+                                             [&](tbb::flow_control& control) -> GeometryBatch* {
+                                               auto& batch = batches[next++ % kBatchesInFlight];
+                                               if (!batch) batch = make_batch();
+                                               if (indices.fill(*batch)) return batch.get();
+                                               control.stop();
+                                               return nullptr;
+                                             }) &
+          tbb::make_filter<GeometryBatch*, GeometryBatch*>(filter_mode::parallel,
+                                                           [](GeometryBatch* batch) {
+                                                             batch->process();
+                                                             return batch;
+                                                           }) &
+          tbb::make_filter<GeometryBatch*, void>(filter_mode::serial_in_order,
+                                                 [&](GeometryBatch* batch) { raster_stage.draw(*batch); }));
+  raster_stage.finish();
 }
 
 }  // namespace splatscope

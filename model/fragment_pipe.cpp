@@ -1,78 +1,91 @@
+#include "model/fragment_pipe.h"
+
 #include <algorithm>
 
-#include "model/draw.h"
 #include "model/output/output.h"
 #include "model/texture/sample.h"
 
 namespace splatscope {
 namespace {
 
-// A colour component as the pixel unit receives it.
-float received(float value, ColorFormat format) {
-  return format == ColorFormat::unorm8 ? static_cast<float>(output::quantize_unorm8(value)) / 255.0f
-                                       : output::saturate(value);
-}
+constexpr std::size_t kCapacity = raster::FragmentPlaces::kCapacity;
+static_assert(kCapacity == pixel::kBatch);
 
 }  // namespace
 
-FragmentPipe::FragmentPipe(const DrawBindings& bindings, Frame& frame)
+FragmentPipe::FragmentPipe(const DrawBindings& bindings, Frame& frame, DrawWork* work)
     : bindings_(bindings),
       frame_(frame),
+      work_(work),
       samples_(bindings.texture != nullptr && bindings.pixel != nullptr &&
-               (bindings.pixel->texture_stages() & 1u) != 0),
-      batch_{} {}
+               (bindings.pixel->texture_stages() & 1u) != 0) {}
 
-void FragmentPipe::interpolate(const raster::TriangleSetup& setup, const primitive::WindowTriangle& triangle,
-                               float dx, float dy) {
-  const float inverse_scale = 1.0f / setup.scale.at(dx, dy);
-  const float b1 = setup.weight1.at(dx, dy) * inverse_scale, b2 = setup.weight2.at(dx, dy) * inverse_scale;
-  for (const int attribute : bindings_.attributes) {
-    const Vec4 &a0 = triangle[0].attributes[attribute], &a1 = triangle[1].attributes[attribute],
-               &a2 = triangle[2].attributes[attribute];
-    for (int c = 0; c < 4; ++c) {
-      // In this form an attribute that is the same at all corners stays exactly that.
-      const float value = a0[c] + (b1 * (a1[c] - a0[c]) + b2 * (a2[c] - a0[c]));
-      if (attribute == primitive::kDiffuse) {
-        batch_.v0[c][count_] = received(value, frame_.formats.color);
-      } else if (attribute == primitive::kSpecular) {
-        batch_.v1[c][count_] = received(value, frame_.formats.color);
-      } else {
-        batch_.t[attribute - primitive::kTexcoord0][c][count_] = value;
-      }
-    }
+void FragmentPipe::begin(const raster::TriangleSetup& setup,
+                         const std::array<const raster::Attributes*, 3>& corners) {
+  setup_ = &setup;
+  corners_ = corners;
+}
+
+void FragmentPipe::push_quad(int x, int y, unsigned passed) {
+  if (count_ + 4 > kCapacity) flush();
+  const auto left = static_cast<float>(x - setup_->left), top = static_cast<float>(y - setup_->top);
+  const std::uint32_t first = static_cast<std::uint32_t>(y) * frame_.width + static_cast<std::uint32_t>(x);
+  for (unsigned bit = 0; bit < 4; ++bit) {  // all are stored, and stay where they passed
+    places_.x[count_] = left + static_cast<float>(bit & 1u);
+    places_.y[count_] = top + static_cast<float>(bit >> 1);
+    pixels_[count_] = first + (bit & 1u) + (bit >> 1) * frame_.width;
+    if (work_ != nullptr) quads_[count_] = static_cast<std::uint32_t>(work_->quads.size()) - 1;
+    count_ += passed >> bit & 1u;
   }
 }
 
-int FragmentPipe::push_quad(const raster::TriangleSetup& setup, const primitive::WindowTriangle& triangle,
-                            int x, int y, unsigned passed, std::vector<std::uint32_t>& blocks) {
-  const std::size_t first_block = blocks.size();
-  if (count_ + 4 > pixel::kBatch) flush();
-  for (unsigned bit = 0; bit < 4; ++bit) {
-    if ((passed >> bit & 1u) == 0) continue;
-    const int px = x + static_cast<int>(bit & 1u), py = y + static_cast<int>(bit >> 1);
-    interpolate(setup, triangle, static_cast<float>(px - setup.left), static_cast<float>(py - setup.top));
-    if (samples_) {
-      const texture::Texel texel =
-          texture::sample_nearest(*bindings_.texture, batch_.t[0][0][count_], batch_.t[0][1][count_]);
-      for (int c = 0; c < 3; ++c) batch_.t[0][c][count_] = 0;  // D3DFMT_A8 has no colour
-      batch_.t[0][3][count_] = texel.alpha;
-      const auto begin = blocks.begin() + static_cast<std::ptrdiff_t>(first_block);
-      if (std::find(begin, blocks.end(), texel.block) == blocks.end()) blocks.push_back(texel.block);
-    }
-    pixels_[count_++] = static_cast<std::size_t>(py) * frame_.width + static_cast<std::size_t>(px);
+void FragmentPipe::end() {
+  if (interpolated_ == count_) return;
+  raster::interpolate(*setup_, corners_, bindings_.attributes, places_, interpolated_, count_, attributes_);
+  interpolated_ = count_;
+}
+
+void FragmentPipe::note_blocks(std::span<const std::uint32_t> blocks) {
+  std::size_t first = 0;  // of the quad's blocks
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (i == 0 || quads_[i] != quads_[i - 1]) first = work_->texel_blocks.size();
+    const auto begin = work_->texel_blocks.begin() + static_cast<std::ptrdiff_t>(first);
+    if (std::find(begin, work_->texel_blocks.end(), blocks[i]) != work_->texel_blocks.end()) continue;
+    work_->texel_blocks.push_back(blocks[i]);
+    ++work_->quads[quads_[i]].texel_block_count;
   }
-  return static_cast<int>(blocks.size() - first_block);
+}
+
+void FragmentPipe::sample(std::size_t count) {
+  std::array<std::uint32_t, kCapacity> blocks;
+  const auto& coordinates = attributes_.values[primitive::kTexcoord0];
+  for (std::size_t c = 0; c < 3; ++c) std::fill_n(batch_.t[0][c], count, 0.0f);  // D3DFMT_A8 has no colour
+  const auto noted = std::span(blocks).first(work_ != nullptr ? count : 0);
+  texture::sample_nearest(*bindings_.texture, coordinates[0], coordinates[1], {batch_.t[0][3], count}, noted);
+  note_blocks(noted);
 }
 
 void FragmentPipe::flush() {
+  end();
   if (count_ == 0) return;
-  if (bindings_.pixel != nullptr) bindings_.pixel->run({}, batch_, count_);
-  const auto& color = bindings_.pixel != nullptr ? batch_.r0 : batch_.v0;
-  for (int i = 0; i < count_; ++i) {
-    output::write_color({color[0][i], color[1][i], color[2][i], color[3][i]}, pixels_[i],
-                        bindings_.draw.state, frame_);
+  for (const primitive::UsedAttribute& used : bindings_.attributes) {
+    auto& values = attributes_.values[used.attribute];
+    const bool color = used.attribute <= primitive::kSpecular;
+    if (used.attribute == primitive::kTexcoord0 && samples_) continue;
+    auto& to = used.attribute == primitive::kDiffuse    ? batch_.v0
+               : used.attribute == primitive::kSpecular ? batch_.v1
+                                                        : batch_.t[used.attribute - primitive::kTexcoord0];
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (color) output::receive_colors(values[c], count_, frame_.formats.color);
+      std::copy_n(values[c], kCapacity, to[c]);
+    }
   }
-  count_ = 0;
+  if (samples_) sample(count_);
+  if (bindings_.pixel != nullptr) bindings_.pixel->run({}, batch_, static_cast<int>(count_));
+  const auto& color = bindings_.pixel != nullptr ? batch_.r0 : batch_.v0;
+  output::write_colors({color[0], color[1], color[2], color[3]}, std::span(pixels_).first(count_),
+                       bindings_.draw.state, frame_);
+  count_ = interpolated_ = 0;
 }
 
 }  // namespace splatscope

@@ -14,15 +14,15 @@ namespace splatscope {
 namespace {
 
 // What a draw without a pixel program reads.
-constexpr int kDiffuseOnly[] = {primitive::kDiffuse};
+constexpr primitive::UsedAttribute kDiffuseOnly[] = {{primitive::kDiffuse, 4}};
 
 struct LoadedPixelProgram {
   pixel::PixelProgram program;
-  std::vector<int> attributes;
+  std::vector<primitive::UsedAttribute> attributes;
 };
 
-// The interpolated attributes that a pixel program names.
-std::vector<int> attributes_of(const isa::Program& program) {
+// The interpolated attributes that a pixel program names. What it samples a 2D texture at has two components.
+std::vector<primitive::UsedAttribute> attributes_of(const isa::Program& program, unsigned sampled_stages) {
   std::set<int> attributes;
   const auto add = [&](isa::RegisterFile file, int index) {
     if (file == isa::RegisterFile::input) attributes.insert(primitive::kDiffuse + index);
@@ -34,7 +34,12 @@ std::vector<int> attributes_of(const isa::Program& program) {
     add(instruction.destination.file, instruction.destination.index);
     for (const isa::Source& source : instruction.sources) add(source.file, source.index);
   }
-  return {attributes.begin(), attributes.end()};
+  std::vector<primitive::UsedAttribute> used;
+  for (const int attribute : attributes) {
+    const int stage = attribute - primitive::kTexcoord0;
+    used.push_back({attribute, stage >= 0 && (sampled_stages >> stage & 1u) != 0 ? 2 : 4});
+  }
+  return used;
 }
 
 // The programs of a trace, each assembled when a draw first uses it.
@@ -53,7 +58,8 @@ class Programs {
     const auto found = pixel_.find(index);
     if (found != pixel_.end()) return found->second;
     const isa::Program program = load(index);
-    LoadedPixelProgram loaded{pixel::PixelProgram(program, formats_.combiner), attributes_of(program)};
+    LoadedPixelProgram loaded{pixel::PixelProgram(program, formats_.combiner), {}};
+    loaded.attributes = attributes_of(program, loaded.program.texture_stages());
     if (!loaded.program.samples_ahead()) {
       throw UserError(
           program.name, 0,
@@ -96,13 +102,14 @@ class Renderer {
   void run(std::size_t, const Present&) {}
   void run(std::size_t command, const Draw& draw) {
     const LoadedPixelProgram* pixel = draw.pixel_program ? &programs_.pixel(*draw.pixel_program) : nullptr;
-    const DrawBindings bindings{draw,
-                                trace_.buffers[draw.vertex_buffer],
-                                trace_.buffers[draw.index_buffer],
-                                draw.texture ? &trace_.textures[*draw.texture] : nullptr,
-                                programs_.vertex(draw.vertex_program),
-                                pixel ? &pixel->program : nullptr,
-                                pixel ? std::span<const int>(pixel->attributes) : kDiffuseOnly};
+    const DrawBindings bindings{
+        draw,
+        trace_.buffers[draw.vertex_buffer],
+        trace_.buffers[draw.index_buffer],
+        draw.texture ? &trace_.textures[*draw.texture] : nullptr,
+        programs_.vertex(draw.vertex_program),
+        pixel ? &pixel->program : nullptr,
+        pixel ? std::span<const primitive::UsedAttribute>(pixel->attributes) : kDiffuseOnly};
     DrawWork work;
     work.command = static_cast<std::uint32_t>(command);
     render_draw(bindings, options_, rendered_.frame, work, rendered_.counters);

@@ -1,8 +1,12 @@
 #include "model/render.h"
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <deque>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -92,6 +96,62 @@ TEST(Render, TheTwoCullModesShareTheTrianglesBetweenThem) {
   EXPECT_GT(other.fragments, 0u);
   EXPECT_LE(one.triangles_back_facing + other.triangles_back_facing,
             all.triangles - all.triangles_outside - all.triangles_behind);
+}
+
+// What is shaded is what misses a FIFO of the given length, also where batches of the model end; the picture
+// does not depend on it.
+TEST(Render, ShadesWhatMissesTheVertexCache) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> anywhere(-1, 1);
+  static std::array<float, 4 * 3000> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = i % 4 == 3 ? 1 : std::abs(anywhere(random));
+  Trace trace = white_triangles(corners, CullMode::none);
+  std::array<std::uint16_t, 3 * 2000> indices;  // near one another, moving on
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    indices[i] = static_cast<std::uint16_t>(i * 2980 / indices.size() + random() % 20);
+  trace.buffers[1] = buffer_of(indices);
+  std::get<Draw>(trace.commands[0]).index_count = static_cast<std::uint32_t>(indices.size());
+  RenderOptions options;
+  const Rendered usual = render(trace, options);
+  for (const int entries : {1, 4, 18, 64}) {
+    std::deque<std::uint32_t> fifo;
+    std::vector<std::uint32_t> shaded;
+    for (const std::uint16_t index : indices) {
+      if (std::ranges::find(fifo, index) != fifo.end()) continue;
+      shaded.push_back(index);
+      fifo.push_back(index);
+      if (fifo.size() > static_cast<std::size_t>(entries)) fifo.pop_front();
+    }
+    options.vertex_cache_entries = entries;
+    const Rendered rendered = render(trace, options);
+    EXPECT_EQ(rendered.work[0].shaded_vertices, shaded) << entries;
+    EXPECT_EQ(rendered.counters.vertices, shaded.size());
+    EXPECT_EQ(rendered.frame, usual.frame);
+  }
+}
+
+// Enough triangles for several batches in flight, on top of one another.
+TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> anywhere(-1, 1);
+  static std::array<float, 4 * 6000> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = i % 4 == 3 ? 1 : anywhere(random);
+  Trace trace = white_triangles(corners, CullMode::none);
+  trace.programs[0].text = "vs_1_1\nmov oPos, v0\nmov oD0, v0\n";
+  std::get<Draw>(trace.commands[0]).state.depth_test = false;  // the last one stays
+  const auto on_threads = [&](std::size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return render(trace, RenderOptions{});
+  };
+  const Rendered one = on_threads(1);
+  for (const std::size_t threads : {2u, 4u}) {
+    const Rendered many = on_threads(threads);
+    EXPECT_EQ(one.frame, many.frame);
+    EXPECT_EQ(one.work[0].shaded_vertices, many.work[0].shaded_vertices);
+    EXPECT_EQ(one.counters.fragments_passed, many.counters.fragments_passed);
+  }
 }
 
 TEST(Render, EachPresentEndsAFrame) {

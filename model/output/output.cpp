@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "model/output/simd_blend.h"
+
 namespace splatscope::output {
 namespace {
 
@@ -63,34 +65,9 @@ void clear(const Clear& command, Frame& frame) {
   std::ranges::fill(frame.depth, quantize_depth(command.depth, frame.formats.depth));
 }
 
-bool test_depth(std::uint32_t depth, std::size_t pixel, const DrawState& state, Frame& frame) {
-  if (state.depth_test && depth > frame.depth[pixel]) return false;
-  if (state.depth_write) frame.depth[pixel] = depth;
-  return true;
-}
+namespace {
 
-void write_color(const Vec4& color, std::size_t pixel, const DrawState& state, Frame& frame) {
-  if (frame.formats.frame == FrameFormat::unorm8) {
-    Color8 source;
-    for (std::size_t c = 0; c < 4; ++c) source[c] = quantize_unorm8(color[c]);
-    Color8& destination = frame.colors8[pixel];
-    if (!state.blend) {
-      destination = source;
-    } else if (state.destination_factor == BlendFactor::one &&
-               (state.source_factor == BlendFactor::src_alpha || state.source_factor == BlendFactor::one)) {
-      // What splatting blends with: a whole destination under one rounding is added as it is.
-      const int factor = state.source_factor == BlendFactor::one ? 255 : source[3];
-      for (std::size_t c = 0; c < 4; ++c) {
-        destination[c] =
-            static_cast<std::uint8_t>(std::min(255, destination[c] + (2 * source[c] * factor + 255) / 510));
-      }
-    } else {
-      const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
-      destination = blend_unorm8(blend, source, destination);
-    }
-    return;
-  }
-  Vec4& stored = frame.colors32[pixel];
+void write_float(const Vec4& color, Vec4& stored, const DrawState& state) {
   if (!state.blend) {
     stored = color;
     return;
@@ -99,6 +76,34 @@ void write_color(const Vec4& color, std::size_t pixel, const DrawState& state, F
   for (std::size_t c = 0; c < 4; ++c) {
     stored[c] = color[c] * factor_of(state.source_factor, color, destination, c) +
                 destination[c] * factor_of(state.destination_factor, color, destination, c);
+  }
+}
+
+// Whether a whole destination is added to what depends on the source alone: as splatting blends.
+bool adds(const DrawState& state) {
+  return state.destination_factor == BlendFactor::one && state.source_factor <= BlendFactor::inv_src_alpha;
+}
+
+}  // namespace
+
+void write_colors(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
+                  const DrawState& state, Frame& frame) {
+  if (frame.formats.frame == FrameFormat::float32) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const Vec4 color{colors[0][i], colors[1][i], colors[2][i], colors[3][i]};
+      write_float(color, frame.colors32[pixels[i]], state);
+    }
+    return;
+  }
+  if (!state.blend || adds(state)) {
+    add_unorm8(colors, pixels, state, frame.colors8);
+    return;
+  }
+  const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    Color8 source;
+    for (std::size_t c = 0; c < 4; ++c) source[c] = quantize_unorm8(colors[c][i]);
+    frame.colors8[pixels[i]] = blend_unorm8(blend, source, frame.colors8[pixels[i]]);
   }
 }
 

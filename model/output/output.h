@@ -1,7 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "model/output/frame.h"
 
@@ -21,12 +24,16 @@ std::uint8_t quantize_unorm8(float value);
 
 void clear(const Clear& command, Frame& frame);
 
-// Tests and, where `state` says so, writes the depth of one pixel. True: the fragment lives.
-bool test_depth(std::uint32_t depth, std::size_t pixel, const DrawState& state, Frame& frame);
+// The colours of fragments as the pixel unit receives them, in place: saturated, and rounded to 8 bits where
+// the format says so. The array has room for a whole number of kLanes.
+inline constexpr std::size_t kLanes = 16;
+void receive_colors(float* values, std::size_t count, ColorFormat format);
 
-// Writes or blends one fragment's colour (r g b a) into its pixel. In an 8-bit frame the colour is quantised
-// first and the blend rounds once (number/blend.h).
-void write_color(const Vec4& color, std::size_t pixel, const DrawState& state, Frame& frame);
+// Writes or blends the colours (r, g, b, a: an array each, with room for a whole number of kLanes) of
+// fragments into their pixels, one after the other. In an 8-bit frame a colour is quantised first and the
+// blend rounds once (number/blend.h).
+void write_colors(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
+                  const DrawState& state, Frame& frame);
 
 // What the host does to the frame that it has read back: r, g and b divided by the summed weights in alpha,
 // alpha set to 1. Pixels of weight 0 stay as they are. Ren 2002, section 7.

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
+
+#include "model/testing/simd_targets.h"
 
 namespace splatscope::output {
 namespace {
@@ -15,6 +20,12 @@ NumberFormats formats(FrameFormat frame, DepthFormat depth = DepthFormat::z24) {
   out.frame = frame;
   out.depth = depth;
   return out;
+}
+
+void write_one(const Vec4& color, std::uint32_t pixel, const DrawState& state, Frame& frame) {
+  alignas(64) float colors[4][kLanes] = {};
+  for (std::size_t c = 0; c < 4; ++c) colors[c][0] = color[c];
+  write_colors({colors[0], colors[1], colors[2], colors[3]}, std::span(&pixel, 1), state, frame);
 }
 
 TEST(Output, QuantizesDepth) {
@@ -35,19 +46,6 @@ TEST(Output, QuantizesColorToNearest) {
   EXPECT_EQ(0, quantize_unorm8(kNaN));
 }
 
-TEST(Output, DepthTestKeepsTheNearest) {
-  Frame frame(2, 1, formats(FrameFormat::unorm8));
-  clear(Clear{}, frame);
-  DrawState state;
-  EXPECT_TRUE(test_depth(500, 0, state, frame));
-  EXPECT_FALSE(test_depth(501, 0, state, frame));
-  EXPECT_TRUE(test_depth(500, 0, state, frame));  // less or equal
-  state.depth_write = false;
-  EXPECT_TRUE(test_depth(100, 0, state, frame));
-  EXPECT_EQ(500u, frame.depth[0]);
-  EXPECT_EQ(0xffffffu, frame.depth[1]);
-}
-
 TEST(Output, BlendsAdditively) {
   DrawState state;
   state.blend = true;
@@ -55,34 +53,76 @@ TEST(Output, BlendsAdditively) {
   state.destination_factor = BlendFactor::one;
   Frame frame8(1, 1, formats(FrameFormat::unorm8)), frame32(1, 1, formats(FrameFormat::float32));
   for (int i = 0; i < 3; ++i) {
-    write_color({1, 0.5f, 0, 0.25f}, 0, state, frame8);
-    write_color({1, 0.5f, 0, 0.25f}, 0, state, frame32);
+    write_one({1, 0.5f, 0, 0.25f}, 0, state, frame8);
+    write_one({1, 0.5f, 0, 0.25f}, 0, state, frame32);
   }
   // 0.25 is 64/255, 0.5 is 128/255; 64*128/255 = 32.1; 64*64/255 = 16.06: the alpha channel sums the square.
   EXPECT_EQ((Color8{192, 96, 0, 48}), frame8.colors8[0]);
   EXPECT_EQ((Vec4{0.75f, 0.375f, 0, 0.1875f}), frame32.colors32[0]);
 }
 
-// The short way for the blending of splats gives what the rule gives.
-TEST(Output, AdditiveBlendingFollowsTheRule) {
-  Frame frame(1, 1, formats(FrameFormat::unorm8));
-  for (const BlendFactor factor : {BlendFactor::one, BlendFactor::src_alpha}) {
-    DrawState state;
-    state.blend = true;
-    state.source_factor = factor;
-    state.destination_factor = BlendFactor::one;
-    for (int s = 0; s < 256; ++s) {
-      for (int a = 0; a < 256; a += 3) {
-        const Color8 source{static_cast<std::uint8_t>(s), 255, 0, static_cast<std::uint8_t>(a)};
-        const Color8 destination{static_cast<std::uint8_t>(255 - a), static_cast<std::uint8_t>(a), 77, 200};
-        frame.colors8[0] = destination;
-        write_color({static_cast<float>(s) / 255, 1, 0, static_cast<float>(a) / 255}, 0, state, frame);
-        ASSERT_EQ(blend_unorm8({factor, BlendFactor::one, BlendEquation::add, {}}, source, destination),
-                  frame.colors8[0])
-            << s << ' ' << a;
+// Many fragments at once, some in the same pixel, are blended as the rule says, one after the other.
+TEST(Output, EveryBlendFollowsTheRule) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  constexpr std::size_t kCount = 80, kPixels = 7;
+  const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
+  const auto last = static_cast<unsigned>(BlendFactor::src_alpha_saturate);
+  testing::on_each_simd_target([&] {
+    for (unsigned factors = 0; factors < (last + 1) * (last + 1); ++factors) {
+      DrawState state;
+      state.blend = random() % 4 != 0;
+      state.source_factor = BlendFactor(factors % (last + 1));
+      state.destination_factor = random() % 2 ? BlendFactor::one : BlendFactor(factors / (last + 1));
+      Frame frame(kPixels, 1, formats(FrameFormat::unorm8));
+      for (Color8& color : frame.colors8) color = {byte(), byte(), byte(), byte()};
+      std::vector<Color8> expected = frame.colors8;
+      alignas(64) float colors[4][kCount];
+      std::array<std::uint32_t, kCount> pixels;
+      for (std::size_t i = 0; i < kCount; ++i) {
+        const Color8 source{byte(), byte(), byte(), byte()};
+        for (std::size_t c = 0; c < 4; ++c) colors[c][i] = static_cast<float>(source[c]) / 255;
+        pixels[i] = static_cast<std::uint32_t>(random() % kPixels);
+        Color8& pixel = expected[pixels[i]];
+        const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
+        pixel = state.blend ? blend_unorm8(blend, source, pixel) : source;
       }
+      write_colors({colors[0], colors[1], colors[2], colors[3]}, pixels, state, frame);
+      ASSERT_EQ(expected, frame.colors8) << factors;
+    }
+  });
+}
+
+// Of all products of 8-bit numbers.
+TEST(Output, AdditiveBlendingRoundsEveryProduct) {
+  DrawState state;
+  state.blend = true;
+  state.source_factor = BlendFactor::src_alpha;
+  state.destination_factor = BlendFactor::one;
+  Frame frame(1, 1, formats(FrameFormat::unorm8));
+  for (int s = 0; s < 256; ++s) {
+    for (int a = 0; a < 256; ++a) {
+      const Color8 source{static_cast<std::uint8_t>(s), 255, 0, static_cast<std::uint8_t>(a)};
+      frame.colors8[0] = {0, 0, 0, 0};
+      write_one({static_cast<float>(s) / 255, 1, 0, static_cast<float>(a) / 255}, 0, state, frame);
+      const BlendState blend{BlendFactor::src_alpha, BlendFactor::one, BlendEquation::add, {}};
+      ASSERT_EQ(blend_unorm8(blend, source, {}), frame.colors8[0]) << s << ' ' << a;
     }
   }
+}
+
+TEST(Output, ReceivesColors) {
+  testing::on_each_simd_target([] {
+    const std::array<float, kLanes> given{-1, 0, 0.001f, 0.5f, 1, 2, kNaN};
+    std::array<float, kLanes> eight_bits = given, floats = given;
+    receive_colors(eight_bits.data(), given.size(), ColorFormat::unorm8);
+    receive_colors(floats.data(), given.size(), ColorFormat::float32);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      EXPECT_EQ(static_cast<float>(quantize_unorm8(given[i])) / 255.0f, eight_bits[i]) << given[i];
+      EXPECT_EQ(saturate(given[i]), floats[i]) << given[i];
+    }
+  });
 }
 
 TEST(Output, SaturatesInEightBits) {
@@ -90,7 +130,7 @@ TEST(Output, SaturatesInEightBits) {
   state.blend = true;
   state.destination_factor = BlendFactor::one;
   Frame frame(1, 1, formats(FrameFormat::unorm8));
-  for (int i = 0; i < 3; ++i) write_color({0.4f, 0, 0, 0.4f}, 0, state, frame);
+  for (int i = 0; i < 3; ++i) write_one({0.4f, 0, 0, 0.4f}, 0, state, frame);
   EXPECT_EQ((Color8{255, 0, 0, 255}), frame.colors8[0]);
 }
 

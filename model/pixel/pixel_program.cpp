@@ -43,69 +43,6 @@ Affine affine_of(const isa::Source& source) {
   return source.negate ? Affine{-result.scale, -result.offset} : result;
 }
 
-template <typename Function>
-void each(const isa::Instruction& instruction, Register& result, int count, Function function) {
-  for (std::size_t component = 0; component < 4; ++component) {
-    if (!(instruction.destination.mask & (1u << component))) continue;
-    float* out = result.component[component];
-    for (int i = 0; i < count; ++i) out[i] = function(component, static_cast<std::size_t>(i));
-  }
-}
-
-// The result before its modifiers, in the components of the mask.
-void compute(const isa::Instruction& instruction, const std::array<Operand, 3>& sources,
-             const Context& context, Register& result) {
-  const int count = context.count;
-  const bool select_by_alpha = context.version.minor < 4;  // cnd
-  const auto& bump = context.bump[instruction.destination.index].matrix;
-  const auto& a = sources[0].component;
-  const auto& b = sources[1].component;
-  const auto& c = sources[2].component;
-  using std::size_t;
-  switch (instruction.opcode) {
-    case isa::Opcode::mov:
-      return each(instruction, result, count, [&](size_t k, size_t i) { return a[k][i]; });
-    case isa::Opcode::add:
-      return each(instruction, result, count, [&](size_t k, size_t i) { return a[k][i] + b[k][i]; });
-    case isa::Opcode::sub:
-      return each(instruction, result, count, [&](size_t k, size_t i) { return a[k][i] - b[k][i]; });
-    case isa::Opcode::mul:
-      return each(instruction, result, count, [&](size_t k, size_t i) { return a[k][i] * b[k][i]; });
-    case isa::Opcode::mad:
-      return each(instruction, result, count,
-                  [&](size_t k, size_t i) { return a[k][i] * b[k][i] + c[k][i]; });
-    case isa::Opcode::lrp:
-      return each(instruction, result, count,
-                  [&](size_t k, size_t i) { return a[k][i] * (b[k][i] - c[k][i]) + c[k][i]; });
-    case isa::Opcode::dp3:
-      return each(instruction, result, count, [&](size_t, size_t i) {
-        return a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i];
-      });
-    case isa::Opcode::dp4:
-      return each(instruction, result, count, [&](size_t, size_t i) {
-        return a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i] + a[3][i] * b[3][i];
-      });
-    case isa::Opcode::cnd:
-      return each(instruction, result, count, [&](size_t k, size_t i) {
-        return (select_by_alpha ? a[3][i] : a[k][i]) > 0.5f ? b[k][i] : c[k][i];
-      });
-    case isa::Opcode::cmp:
-      return each(instruction, result, count,
-                  [&](size_t k, size_t i) { return a[k][i] >= 0.0f ? b[k][i] : c[k][i]; });
-    case isa::Opcode::bem:
-      return each(instruction, result, count,
-                  [&](size_t k, size_t i) { return a[k][i] + bump[0][k] * b[0][i] + bump[1][k] * b[1][i]; });
-    default:
-      throw ModelError("not an arithmetic instruction of pixel programs");
-  }
-}
-
-// The range of results, and whether they are rounded to steps of 1/255.
-struct ResultFormat {
-  float low, high;
-  bool steps;
-};
-
 ResultFormat result_format(isa::Version version, CombinerFormat format) {
   const float range = version.minor == 4 ? 8.0f : 1.0f;
   if (format == CombinerFormat::unbounded)
@@ -124,11 +61,8 @@ void commit(const isa::Instruction& instruction, ResultFormat format, const Regi
   const float high = destination.saturate ? 1.0f : format.high;
   for (std::size_t component = 0; component < 4; ++component) {
     if (!(destination.mask & (1u << component))) continue;
-    const float* from = result.component[component];
-    float* out = to.component[component];
-    for (int i = 0; i < count; ++i) out[i] = in_range(from[i] * scale, low, high);
-    if (format.steps)
-      for (int i = 0; i < count; ++i) out[i] = std::nearbyint(out[i] * 255.0f) / 255.0f;
+    commit_lanes(result.component[component], scale, {low, high, format.steps}, to.component[component],
+                 count);
   }
 }
 
@@ -161,8 +95,7 @@ Operand read(const isa::Source& source, Registers& registers, Register& copy, in
   for (std::size_t lane = 0; lane < 4; ++lane) {
     const Lanes& values = from.component[source.swizzle[lane]];
     operand.component[lane] = plain ? values : copy.component[lane];
-    if (!plain)
-      for (int i = 0; i < count; ++i) copy.component[lane][i] = values[i] * affine.scale + affine.offset;
+    if (!plain) scale_lanes(values, affine.scale, affine.offset, copy.component[lane], count);
   }
   return operand;
 }
@@ -302,7 +235,11 @@ std::size_t PixelProgram::Decoded::execute(std::size_t at, Registers& registers,
     std::array<Operand, 3> sources{};
     for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
       sources[i] = read(instruction.sources[i], registers, copies[i], context.count);
-    compute(instruction, sources, context, results[k]);
+    const isa::Destination& destination = instruction.destination;
+    const bool select_by_alpha = version.minor < 4;  // cnd
+    compute_lanes({instruction.opcode, destination.mask, select_by_alpha, sources,
+                   context.bump[destination.index].matrix},
+                  context.count, results[k]);
   }
   for (std::size_t k = 0; k < issued; ++k)
     commit(steps[at + k].instruction, format, results[k], registers, context.count);

@@ -11,15 +11,17 @@
 namespace splatscope::pixel {
 
 // Into the range of a register, which has 0 in it. NaN counts as 0: the registers of the hardware are
-// fixed-point and hold none. Loops of it vectorise.
+// fixed-point and hold none.
 inline float in_range(float value, float low, float high) {
   const float number = std::isnan(value) ? 0.0f : value;
   return std::min(std::max(number, low), high);
 }
 
-inline void clamp_lanes(const float* from, float low, float high, float* to, int count) {
-  for (int i = 0; i < count; ++i) to[i] = in_range(from[i], low, high);
-}
+// in_range of each lane.
+void clamp_lanes(const float* from, float low, float high, float* to, int count);
+
+// value*scale + offset of each lane.
+void scale_lanes(const float* from, float scale, float offset, float* to, int count);
 
 struct alignas(64) Register {
   Lanes component[4];
@@ -52,6 +54,27 @@ struct Operand {
 };
 
 Operand read(const isa::Source& source, Registers& registers, Register& copy, int count);
+
+// An arithmetic instruction with its operands found.
+struct Operation {
+  isa::Opcode opcode;
+  unsigned mask;         // of the components that are computed
+  bool select_by_alpha;  // cnd looks at alpha alone
+  std::array<Operand, 3> sources;
+  const float (*bump)[2];  // of bem
+};
+
+// The result before its modifiers, in the components of the mask.
+void compute_lanes(const Operation& operation, int count, Register& result);
+
+// The range of results, and whether they are rounded to steps of 1/255.
+struct ResultFormat {
+  float low, high;
+  bool steps;
+};
+
+// Results scaled, and as the register holds them.
+void commit_lanes(const float* from, float scale, const ResultFormat& format, float* to, int count);
 
 // One texture address instruction (texture_instructions.cpp).
 void run_texture_instruction(const isa::Instruction& instruction, Registers& registers,

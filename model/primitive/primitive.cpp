@@ -7,9 +7,6 @@
 namespace splatscope::primitive {
 namespace {
 
-// Direct3D 8 puts pixel centres at integer window coordinates, the rasteriser at halves.
-constexpr double kPixelCentre = 0.5;
-
 struct Polygon {
   std::array<ClipVertex, kMaxCorners> corners;
   int count = 0;
@@ -40,18 +37,18 @@ int count_outside(const ClipTriangle& triangle, const Plane& plane) {
   return outside;
 }
 
-ClipVertex between(const ClipVertex& a, const ClipVertex& b, double t, std::span<const int> used) {
+ClipVertex between(const ClipVertex& a, const ClipVertex& b, double t, std::span<const UsedAttribute> used) {
   const auto mix = [t](float from, float to) { return static_cast<float>(from + t * (double{to} - from)); };
   ClipVertex out;
   for (int c = 0; c < 4; ++c) out.position[c] = mix(a.position[c], b.position[c]);
-  for (const int i : used) {
+  for (const auto& [i, components] : used) {
     for (int c = 0; c < 4; ++c) out.attributes[i][c] = mix(a.attributes[i][c], b.attributes[i][c]);
   }
   return out;
 }
 
 // Sutherland and Hodgman's step: the part of a convex polygon inside one plane.
-Polygon clip(const Polygon& in, const Plane& plane, std::span<const int> used) {
+Polygon clip(const Polygon& in, const Plane& plane, std::span<const UsedAttribute> used) {
   Polygon out;
   for (int i = 0; i < in.count && out.count < kMaxCorners; ++i) {
     const ClipVertex& a = in.corners[i];
@@ -80,8 +77,8 @@ WindowVertex project(const ClipVertex& vertex, const Viewport& viewport) {
 
 }  // namespace
 
-Assembled assemble(const ClipTriangle& triangle, const Viewport& viewport, std::span<const int> used,
-                   std::array<WindowTriangle, kMaxPieces>& out) {
+Assembled assemble(const ClipTriangle& triangle, const Viewport& viewport,
+                   std::span<const UsedAttribute> used, std::array<WindowTriangle, kMaxPieces>& out) {
   for (const ClipVertex& vertex : triangle) {
     if (!finite(vertex)) return {TriangleOutcome::not_finite, 0};
   }

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "model/number/formats.h"
 #include "model/primitive/primitive.h"
 
 // Triangle setup and rasterisation into 2x2 quads.
@@ -14,21 +17,24 @@ struct Plane {
   float at(float x, float y) const { return origin + (dx * x + dy * y); }
 };
 
-// One edge of the triangle on the subpixel grid: inside where its value >= 0 (a top or left edge contains its
-// own points, the others do not: that is folded into `origin`).
+// One edge of the triangle: inside where its value >= 0 (a top or left edge contains its own points, the
+// others do not). In units of the subpixel grid's step times a pixel, rounded down: that keeps the sign at
+// every pixel centre.
 struct Edge {
-  std::int64_t origin = 0, dx = 0, dy = 0;  // at the origin pixel's centre; change per pixel
+  std::int64_t origin = 0;      // at the origin pixel's centre
+  std::int32_t dx = 0, dy = 0;  // change per pixel
 };
 
 // A triangle ready to be rasterised. Coverage is decided on the machine's subpixel grid; depth and attributes
 // are planes through the unsnapped corners: how the hardware rounds them is not known, and this rounds least.
 struct TriangleSetup {
   std::array<Edge, 3> edges;
-  int left = 0, top = 0, right = 0,
-      bottom = 0;                 // pixels that can be covered: left <= x < right, top <= y < bottom
+  // Pixels that can be covered: left <= x < right, top <= y < bottom. (left, top) is the origin pixel.
+  int left = 0, top = 0, right = 0, bottom = 0;
   Plane depth;                    // window z
   Plane weight1, weight2, scale;  // perspective barycentrics of corners 1 and 2: weightN(x, y) / scale(x, y)
-  bool covers = false;            // false: no pixel centre is inside
+  int winding = 0;      // of the corners on the grid: 1 clockwise in the window, -1 the other way, 0 no area
+  bool covers = false;  // false: no pixel centre is inside
 };
 
 // A window coordinate on the subpixel grid, in units of 2^-(bits+1) pixel: truncated toward minus infinity,
@@ -41,49 +47,60 @@ inline double driver_rounding(int subpixel_bits) {
   return 0.5 / static_cast<double>(1 << subpixel_bits);
 }
 
-// `rounding` (pixels) is added to x and y before they are truncated.
-TriangleSetup set_up(const primitive::WindowTriangle& triangle, const primitive::Viewport& viewport,
-                     int subpixel_bits, double rounding);
+// Corners of triangles waiting for their setup: structure of arrays, [corner][triangle].
+struct Corners {
+  static constexpr std::size_t kCapacity = 64;
+  alignas(64) double x[3][kCapacity], y[3][kCapacity], z[3][kCapacity], inverse_w[3][kCapacity];
 
-// Which way round the corners run in the window on the subpixel grid: positive clockwise, negative
-// counter-clockwise, 0 without area.
-int winding(const primitive::WindowTriangle& triangle, int subpixel_bits, double rounding);
+  void set(std::size_t triangle, std::size_t corner, double window_x, double window_y, double window_z,
+           double w) {
+    x[corner][triangle] = window_x;
+    y[corner][triangle] = window_y;
+    z[corner][triangle] = window_z;
+    inverse_w[corner][triangle] = w;
+  }
+};
+
+// Sets up the first out.size() triangles (at most Corners::kCapacity). `rounding` (pixels) is added to x and
+// y before they are truncated to the grid. Coordinates lie within the guard band.
+void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
+            std::span<TriangleSetup> out);
 
 // 8x8-pixel tiles that the rectangle of a setup touches.
 std::uint32_t tiles_touched(const TriangleSetup& setup);
 
-// Calls visit(x, y, mask) for every 2x2 quad with coverage, row by row: x and y are the even coordinates of
-// its first pixel, mask has bit (y&1)*2 + (x&1). Pixels outside the viewport are never covered.
-template <typename Visit>
-void for_each_quad(const TriangleSetup& setup, Visit&& visit) {
-  if (!setup.covers) return;
-  const int first_x = setup.left & ~1, first_y = setup.top & ~1;
-  std::int64_t row[3];
-  for (int e = 0; e < 3; ++e) {
-    const Edge& edge = setup.edges[e];
-    row[e] = edge.origin + edge.dx * (first_x - setup.left) + edge.dy * (first_y - setup.top);
-  }
-  for (int y = first_y; y < setup.bottom; y += 2) {
-    std::int64_t value[3] = {row[0], row[1], row[2]};
-    const unsigned rows = (y >= setup.top ? 0x3u : 0u) | (y + 1 < setup.bottom ? 0xcu : 0u);
-    for (int x = first_x; x < setup.right; x += 2) {
-      std::int64_t inside[4] = {0, 0, 0, 0};  // negative: outside one of the edges
-      for (int e = 0; e < 3; ++e) {
-        const std::int64_t v = value[e], dx = setup.edges[e].dx, dy = setup.edges[e].dy;
-        inside[0] |= v;
-        inside[1] |= v + dx;
-        inside[2] |= v + dy;
-        inside[3] |= v + dx + dy;
-        value[e] = v + 2 * dx;
-      }
-      const unsigned columns = (x >= setup.left ? 0x5u : 0u) | (x + 1 < setup.right ? 0xau : 0u);
-      unsigned mask = rows & columns;
-      for (unsigned pixel = 0; pixel < 4; ++pixel)
-        mask &= ~(static_cast<unsigned>(inside[pixel] < 0) << pixel);
-      if (mask != 0) visit(x, y, mask);
-    }
-    for (int e = 0; e < 3; ++e) row[e] += 2 * setup.edges[e].dy;
-  }
-}
+// 8x8 pixels at even coordinates, a bit each in the order of quads: bit 16*(row of quads) + 4*(column of
+// quads) + 2*(y&1) + (x&1).
+inline constexpr int kWindow = 8;
+struct Window {
+  int x = 0, y = 0;  // its first pixel
+  std::uint64_t covered = 0;
+  std::uint64_t passed = 0;  // subset of `covered` that passed the depth test
+
+  static constexpr int x_of(unsigned bit) { return static_cast<int>((bit >> 1 & 6) | (bit & 1)); }
+  static constexpr int y_of(unsigned bit) { return static_cast<int>((bit >> 3 & 6) | (bit >> 1 & 1)); }
+};
+
+// The depth buffer of a draw.
+struct DepthTarget {
+  std::span<std::uint32_t> values;  // rows of viewport.width
+  primitive::Viewport viewport;
+  DepthFormat format = DepthFormat::z24;
+  bool test = true;   // passes where depth <= stored depth
+  bool write = true;  // of what passed
+};
+
+// What became of the pixels of a band.
+struct BandCounts {
+  std::size_t windows = 0;
+  std::uint32_t covered = 0, passed = 0;  // pixels
+  std::uint32_t quads = 0;                // with covered pixels
+};
+
+// The windows of a triangle with covered pixels in one band of 8 rows, written to `out`; tests (and writes)
+// the depth of these pixels. `y`: of the band, even.
+inline constexpr std::size_t kMaxWindows = 4096 / kWindow + 1;
+BandCounts rasterize_band(const TriangleSetup& setup, const DepthTarget& depth, int y,
+                          std::span<Window, kMaxWindows> out);
 
 }  // namespace splatscope::raster

@@ -2,11 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
+#include <tuple>
+
+#include "model/output/output.h"
+#include "model/testing/simd_targets.h"
 
 namespace splatscope::raster {
 namespace {
@@ -24,16 +33,48 @@ WindowTriangle triangle(double x0, double y0, double x1, double y1, double x2, d
   return out;
 }
 
+TriangleSetup set_up(const WindowTriangle& t, int subpixel_bits, double rounding) {
+  const auto corners = std::make_unique<Corners>();
+  for (std::size_t i = 0; i < 3; ++i) corners->set(0, i, t[i].x, t[i].y, t[i].z, t[i].inverse_w);
+  TriangleSetup setup;
+  raster::set_up(*corners, kViewport, subpixel_bits, rounding, std::span(&setup, 1));
+  return setup;
+}
+
+// All windows of a triangle with covered pixels.
+std::vector<Window> windows_of(const TriangleSetup& setup, const DepthTarget& depth) {
+  std::vector<Window> all;
+  const auto band = std::make_unique<std::array<Window, kMaxWindows>>();
+  if (!setup.covers) return all;
+  for (int y = setup.top & ~1; y < setup.bottom; y += kWindow) {
+    const BandCounts counts = rasterize_band(setup, depth, y, *band);
+    BandCounts expected{counts.windows, 0, 0, 0};
+    for (const Window& window : std::span(*band).first(counts.windows)) {
+      expected.covered += static_cast<unsigned>(std::popcount(window.covered));
+      expected.passed += static_cast<unsigned>(std::popcount(window.passed));
+      for (unsigned quad = 0; quad < 16; ++quad) expected.quads += (window.covered >> 4 * quad & 15u) != 0;
+      all.push_back(window);
+    }
+    EXPECT_EQ(std::tuple(expected.covered, expected.passed, expected.quads),
+              std::tuple(counts.covered, counts.passed, counts.quads));
+  }
+  return all;
+}
+
+DepthTarget no_depth() {
+  return {{}, kViewport, DepthFormat::z24, false, false};
+}
+
 // How often each covered pixel was visited.
 std::map<std::pair<int, int>, int> covered(const WindowTriangle& t, int subpixel_bits, double rounding = 0) {
   std::map<std::pair<int, int>, int> pixels;
-  for_each_quad(set_up(t, kViewport, subpixel_bits, rounding), [&](int x, int y, unsigned mask) {
-    EXPECT_EQ(0, x & 1);
-    EXPECT_EQ(0, y & 1);
-    for (int bit = 0; bit < 4; ++bit) {
-      if (mask >> bit & 1) ++pixels[{x + (bit & 1), y + (bit >> 1)}];
-    }
-  });
+  for (const Window& window : windows_of(set_up(t, subpixel_bits, rounding), no_depth())) {
+    EXPECT_EQ(0, window.x & 1);
+    EXPECT_EQ(0, window.y & 1);
+    EXPECT_EQ(window.covered, window.passed);
+    for (unsigned bit = 0; bit < 64; ++bit)
+      if (window.covered >> bit & 1) ++pixels[{window.x + Window::x_of(bit), window.y + Window::y_of(bit)}];
+  }
   return pixels;
 }
 
@@ -68,7 +109,7 @@ TEST(Raster, TruncatesToTheSubpixelGrid) {
 // Triangles of a fan around an inner point meet without gap and without overlap, on every grid.
 TEST(Raster, SharedEdgesAreCoveredOnce) {
   const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> inner(8, 24);
   for (int trial = 0; trial < 300; ++trial) {
@@ -98,7 +139,7 @@ TEST(Raster, StaysInsideTheViewport) {
 // Coverage equals the sign test in exact arithmetic at every pixel centre.
 TEST(Raster, AgreesWithTheEdgeTestAtEveryCentre) {
   const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> anywhere(-8, 40);
   for (int trial = 0; trial < 200; ++trial) {
@@ -126,7 +167,7 @@ TEST(Raster, PlanesInterpolatePerspectiveCorrectly) {
   WindowTriangle t = triangle(10, 10, 90, 20, 30, 100);
   t[0].inverse_w = 1, t[1].inverse_w = 0.25, t[2].inverse_w = 0.5;
   t[0].z = 0, t[1].z = 0.75, t[2].z = 0.5;
-  const TriangleSetup setup = set_up(t, kViewport, 4, driver_rounding(4));
+  const TriangleSetup setup = set_up(t, 4, driver_rounding(4));
   ASSERT_TRUE(setup.covers);
   // At window barycentrics (l0, l1, l2) the perspective ones are li/wi over their sum.
   const double l[] = {0.2, 0.5, 0.3};
@@ -140,19 +181,103 @@ TEST(Raster, PlanesInterpolatePerspectiveCorrectly) {
   EXPECT_NEAR(z, setup.depth.at(dx, dy), 1e-6);
 }
 
+int winding_of(const WindowTriangle& t, int subpixel_bits, double rounding) {
+  return set_up(t, subpixel_bits, rounding).winding;
+}
+
 TEST(Raster, WindingIsThatOfTheSnappedCorners) {
-  EXPECT_EQ(1, winding(triangle(10, 10, 20, 10, 10, 20), 4, 0));  // clockwise, y down
-  EXPECT_EQ(-1, winding(triangle(10, 10, 10, 20, 20, 10), 4, 0));
-  EXPECT_EQ(0, winding(triangle(5, 5, 20, 20, 10, 10), 4, 0));
+  EXPECT_EQ(1, winding_of(triangle(10, 10, 20, 10, 10, 20), 4, 0));  // clockwise, y down
+  EXPECT_EQ(-1, winding_of(triangle(10, 10, 10, 20, 20, 10), 4, 0));
+  EXPECT_EQ(0, winding_of(triangle(5, 5, 20, 20, 10, 10), 4, 0));
   // Clockwise by less than a step of a coarse grid: snapped to the other way round, or to nothing.
-  EXPECT_EQ(1, winding(triangle(0, 0, 20, 10.9, 10, 5.46), 8, 0));
-  EXPECT_EQ(-1, winding(triangle(0, 0, 20, 10.9, 10, 5.46), 0, 0.5));
-  EXPECT_EQ(0, winding(triangle(0, 0, 20, 10.9, 10, 5.46), 0, 0));
+  EXPECT_EQ(1, winding_of(triangle(0, 0, 20, 10.9, 10, 5.46), 8, 0));
+  EXPECT_EQ(-1, winding_of(triangle(0, 0, 20, 10.9, 10, 5.46), 0, 0.5));
+  EXPECT_EQ(0, winding_of(triangle(0, 0, 20, 10.9, 10, 5.46), 0, 0));
+}
+
+bool same(const Plane& a, const Plane& b) {
+  return std::memcmp(&a, &b, sizeof(Plane)) == 0;
+}
+
+// Every SIMD target gives the setups, the coverage and the depths of the first one, which has no SIMD.
+TEST(Raster, EverySimdTargetGivesTheSameBits) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> size(-12, 12), z(-0.1, 1.1), w(0.01, 1), anywhere(-1, 1);
+  std::vector<WindowTriangle> triangles;
+  for (int i = 0; i < 400; ++i) {
+    const double reach = i % 20 == 0 ? 30000 : 1;  // a few as large as the guard band lets them be
+    const double x = 320 + 340 * anywhere(random), y = 240 + 260 * anywhere(random);
+    WindowTriangle t =
+        triangle(x + reach * size(random) / 12, y + reach * size(random) / 12, x + size(random),
+                 y + size(random), x + reach * size(random) / 12, y + size(random));
+    for (WindowVertex& vertex : t) vertex.z = z(random), vertex.inverse_w = w(random);
+    triangles.push_back(t);
+  }
+  struct Drawn {
+    std::vector<TriangleSetup> setups;
+    std::vector<Window> windows;
+    std::vector<std::uint32_t> depth;
+  };
+  for (const DepthFormat format : {DepthFormat::z16, DepthFormat::z24, DepthFormat::float32}) {
+    std::optional<Drawn> first;
+    testing::on_each_simd_target([&] {
+      Drawn drawn;
+      drawn.depth.assign(std::size_t{kViewport.width} * kViewport.height,
+                         output::quantize_depth(0.9f, format));
+      for (const WindowTriangle& t : triangles) {
+        drawn.setups.push_back(set_up(t, 4, driver_rounding(4)));
+        for (const Window& window :
+             windows_of(drawn.setups.back(), {drawn.depth, kViewport, format, true, true}))
+          drawn.windows.push_back(window);
+      }
+      if (!first) first = drawn;
+      for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const TriangleSetup &a = first->setups[i], &b = drawn.setups[i];
+        ASSERT_EQ(a.covers, b.covers);
+        ASSERT_EQ(a.winding, b.winding);
+        if (!a.covers) continue;
+        for (std::size_t e = 0; e < 3; ++e)
+          ASSERT_EQ(std::tuple(a.edges[e].origin, a.edges[e].dx, a.edges[e].dy),
+                    std::tuple(b.edges[e].origin, b.edges[e].dx, b.edges[e].dy));
+        ASSERT_TRUE(same(a.depth, b.depth) && same(a.weight1, b.weight1) && same(a.weight2, b.weight2) &&
+                    same(a.scale, b.scale));
+      }
+      ASSERT_EQ(first->windows.size(), drawn.windows.size());
+      for (std::size_t i = 0; i < drawn.windows.size(); ++i) {
+        const Window &a = first->windows[i], &b = drawn.windows[i];
+        ASSERT_EQ(std::tuple(a.x, a.y, a.covered, a.passed), std::tuple(b.x, b.y, b.covered, b.passed));
+      }
+      ASSERT_EQ(first->depth, drawn.depth);
+    });
+  }
+}
+
+TEST(Raster, DepthTestKeepsTheNearest) {
+  std::vector<std::uint32_t> depth(std::size_t{kViewport.width} * kViewport.height,
+                                   output::quantize_depth(0.5f, DepthFormat::z24));
+  const auto passed = [&](double z, bool test, bool write) {
+    WindowTriangle t = triangle(2, 2, 3, 2, 2, 3);  // the pixel (2, 2)
+    for (WindowVertex& vertex : t) vertex.z = z;
+    const auto windows = windows_of(set_up(t, 4, 0.1), {depth, kViewport, DepthFormat::z24, test, write});
+    EXPECT_EQ(1u, windows.size());
+    return windows.at(0).passed != 0;
+  };
+  const std::uint32_t& stored = depth[2 * kViewport.width + 2];
+  EXPECT_TRUE(passed(0.5, true, true));  // less or equal
+  EXPECT_FALSE(passed(0.5001, true, true));
+  EXPECT_TRUE(passed(0.25, true, false));
+  EXPECT_EQ(output::quantize_depth(0.5f, DepthFormat::z24), stored);
+  EXPECT_TRUE(passed(0.25, true, true));
+  EXPECT_EQ(output::quantize_depth(0.25f, DepthFormat::z24), stored);
+  EXPECT_TRUE(passed(0.75, false, true));
+  EXPECT_EQ(output::quantize_depth(0.75f, DepthFormat::z24), stored);
 }
 
 TEST(Raster, CountsTiles) {
-  EXPECT_EQ(1u, tiles_touched(set_up(triangle(1, 1, 7, 1, 1, 7), kViewport, 4, 0)));
-  EXPECT_EQ(4u, tiles_touched(set_up(triangle(1, 1, 12, 1, 1, 12), kViewport, 4, 0)));
+  EXPECT_EQ(1u, tiles_touched(set_up(triangle(1, 1, 7, 1, 1, 7), 4, 0)));
+  EXPECT_EQ(4u, tiles_touched(set_up(triangle(1, 1, 12, 1, 1, 12), 4, 0)));
 }
 
 }  // namespace

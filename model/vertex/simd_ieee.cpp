@@ -27,37 +27,51 @@ struct Reader {
   V sign;
 };
 
-// Stores the components of the mask for the vertices from `i`, or leaves NaN to the scalar code.
-HWY_INLINE void store(const Call& call, std::size_t i, const V* results) {
-  auto nan = hn::FirstN(F{}, 0);
-  for (std::size_t c = 0; c < kComponents; ++c)
-    if (call.mask & (1u << c)) nan = hn::Or(nan, hn::IsNaN(results[c]));
-  if (HWY_UNLIKELY(!hn::AllFalse(F{}, nan))) {
-    run_scalar(call, Arithmetic::ieee, static_cast<int>(i), static_cast<int>(i + hn::Lanes(F{})));
-    return;
-  }
-  for (std::size_t c = 0; c < kComponents; ++c)
-    if (call.mask & (1u << c)) hn::Store(results[c], F{}, call.destination + c * kBatch + i);
+// Whether `value` is free of NaN; else the vertices from `i` go to the scalar code.
+HWY_INLINE bool all_numbers(const Call& call, std::size_t i, V value) {
+  if (HWY_LIKELY(hn::AllFalse(F{}, hn::IsNaN(value)))) return true;
+  run_scalar(call, Arithmetic::ieee, static_cast<int>(i), static_cast<int>(i + hn::Lanes(F{})));
+  return false;
 }
 
-// result[c] = function(component c) for the components of the mask.
-template <typename Function>
-HWY_INLINE void each_component(const Call& call, std::size_t count, Function function) {
-  for (std::size_t i = 0; i < count; i += hn::Lanes(F{})) {
-    V results[kComponents] = {hn::Zero(F{}), hn::Zero(F{}), hn::Zero(F{}), hn::Zero(F{})};
-    for (std::size_t c = 0; c < kComponents; ++c)
-      if (call.mask & (1u << c)) results[c] = function(c, i);
-    store(call, i, results);
-  }
+HWY_INLINE void put(const Call& call, std::size_t k, std::size_t i, V result) {
+  hn::Store(result, F{}, call.destination + call.components[k] * kBatch + i);
 }
 
-// The same scalar for every component.
+// The same scalar for every component that is written.
 template <typename Function>
 HWY_INLINE void one_scalar(const Call& call, std::size_t count, Function function) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{})) {
     const V scalar = function(i);
-    const V results[kComponents] = {scalar, scalar, scalar, scalar};
-    store(call, i, results);
+    if (!all_numbers(call, i, scalar)) continue;
+    for (std::size_t k = 0; k < call.component_count; ++k) put(call, k, i, scalar);
+  }
+}
+
+template <std::size_t kCount, typename Function>
+HWY_INLINE void each_of(const Call& call, std::size_t count, Function function) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(F{})) {
+    V results[kCount];
+    for (std::size_t k = 0; k < kCount; ++k) results[k] = function(call.components[k], i);
+    V sum = results[0];  // NaN where one of them is, or where two infinities cancel
+    for (std::size_t k = 1; k < kCount; ++k) sum = hn::Add(sum, results[k]);
+    if (!all_numbers(call, i, sum)) continue;
+    for (std::size_t k = 0; k < kCount; ++k) put(call, k, i, results[k]);
+  }
+}
+
+// result[c] = function(component c) for the components that are written.
+template <typename Function>
+HWY_INLINE void each_component(const Call& call, std::size_t count, Function function) {
+  switch (call.component_count) {
+    case 1:
+      return one_scalar(call, count, [&](std::size_t i) HWY_ATTR { return function(call.components[0], i); });
+    case 2:
+      return each_of<2>(call, count, function);
+    case 3:
+      return each_of<3>(call, count, function);
+    default:
+      return each_of<4>(call, count, function);
   }
 }
 
@@ -94,9 +108,8 @@ void run_ieee(const Call& call, int vertices) {
     case Operation::move:
       for (std::size_t i = 0; i < count; i += lanes) {  // raw bits: a NaN is moved, not computed
         V values[kComponents];
-        for (std::size_t k = 0; k < kComponents; ++k) values[k] = a(k, i);
-        for (std::size_t k = 0; k < kComponents; ++k)
-          if (call.mask & (1u << k)) hn::Store(values[k], F{}, call.destination + k * kBatch + i);
+        for (std::size_t k = 0; k < call.component_count; ++k) values[k] = a(call.components[k], i);
+        for (std::size_t k = 0; k < call.component_count; ++k) put(call, k, i, values[k]);
       }
       return;
     case Operation::add:

@@ -1,5 +1,6 @@
-// The NV20's arithmetic on SIMD registers of integers, compiled once a target and chosen at run time
-// (Highway). Bit for bit that of model/number/nv20.h; lanes with an INF or NaN operand go through run_scalar.
+// The NV20's arithmetic on SIMD registers, compiled once a target and chosen at run time (Highway). Bit for
+// bit that of model/number/nv20.h, by the processor's own arithmetic rounding toward zero (Nv20Mode) and by
+// integers. Lanes with an INF, NaN or denormal operand go through run_scalar.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "model/vertex/simd_nv20.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -10,10 +11,14 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::vertex::HWY_NAMESPACE {
-#if HWY_TARGET == HWY_SCALAR
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128 || !HWY_ARCH_X86_64
 
 void run_nv20(const Call& call, int vertices) {
   run_scalar(call, Arithmetic::nv20, 0, vertices);
+}
+
+bool holds_special(const float*, std::size_t) {
+  return true;
 }
 
 #else
@@ -25,6 +30,7 @@ using F = hn::RebindToFloat<U>;
 using W = hn::Repartition<std::uint64_t, U>;  // pairs of lanes
 using V = hn::Vec<U>;
 using VI = hn::Vec<I>;
+using VF = hn::Vec<F>;
 constexpr std::size_t kComponents = 4;
 
 HWY_INLINE V set(std::uint32_t value) {
@@ -81,43 +87,51 @@ HWY_INLINE V pack(V sign, VI exponent, V significand) {
   return hn::Or(sign, hn::IfThenElseZero(positive, in_range));
 }
 
-HWY_INLINE V multiply(V a, V b) {
-  const V exponent_a = exponent_of(a), exponent_b = exponent_of(b);
-  const V implicit = set(0x80000000u);
-  // Significands at bit 31: the high half of their product is the 48-bit one without its 16 low bits.
-  const V product =
-      high_product(hn::Or(hn::ShiftLeft<8>(a), implicit), hn::Or(hn::ShiftLeft<8>(b), implicit));
-  const V carry = hn::ShiftRight<31>(product);
-  const V significand =
-      hn::ShiftRight<7>(hn::IfThenElse(hn::Eq(carry, hn::Zero(U{})), product, hn::ShiftRight<1>(product)));
-  const VI exponent = as_signed(hn::Sub(hn::Add(hn::Add(exponent_a, exponent_b), carry), set(127)));
-  const auto zero = hn::Or(hn::Eq(exponent_a, hn::Zero(U{})), hn::Eq(exponent_b, hn::Zero(U{})));
-  return hn::IfThenZeroElse(zero, pack(sign_of(hn::Xor(a, b)), exponent, significand));
+HWY_INLINE VF as_float(V value) {
+  return hn::BitCast(F{}, value);
 }
 
+// Whether a lane is an INF, a NaN or a denormal.
+HWY_INLINE bool any_special(V value) {
+  const V magnitude = hn::And(value, set(0x7fffffff));
+  const V zero_is_normal =
+      hn::IfThenZeroElse(hn::Eq(magnitude, hn::Zero(U{})), hn::Sub(magnitude, set(0x00800000)));
+  return !hn::AllTrue(U{}, hn::Lt(zero_is_normal, set(0x7f000000)));
+}
+
+// Toward zero. hn::ConvertTo would also saturate what does not fit.
+HWY_INLINE VI integer(VF value) {
+#if HWY_TARGET <= HWY_AVX3
+  return VI{_mm512_cvttps_epi32(value.raw)};
+#elif HWY_TARGET <= HWY_AVX2
+  return VI{_mm256_cvttps_epi32(value.raw)};
+#else
+  return VI{_mm_cvttps_epi32(value.raw)};
+#endif
+}
+
+// Toward zero; what is too large becomes the largest number and what is too small 0, both with their sign:
+// all of it the processor's mode. A zero factor gives +0 instead.
+HWY_INLINE V multiply(V a, V b) {
+  const VF x = as_float(a), y = as_float(b), zero = hn::Zero(F{});
+  return hn::BitCast(U{}, hn::IfThenZeroElse(hn::Or(hn::Eq(x, zero), hn::Eq(y, zero)), hn::Mul(x, y)));
+}
+
+// nv20's sum: the terms as integers in units of 2^-28 of the largest one's power of two, each toward zero,
+// and their exact sum toward zero as a float. Terms under kSmallest, which the scales do not reach, are
+// noted.
+constexpr std::uint32_t kSmallest = 29u << 23;  // as bits: 2^-98
 template <std::size_t kTerms>
-HWY_INLINE V sum(const V (&terms)[kTerms]) {
-  V largest = exponent_of(terms[0]);
-  for (std::size_t k = 1; k < kTerms; ++k) largest = hn::Max(largest, exponent_of(terms[k]));
-  V total = hn::Zero(U{});
-  for (std::size_t k = 0; k < kTerms; ++k) {
-    const V exponent = exponent_of(terms[k]);
-    const V implicit = hn::IfThenZeroElse(hn::Eq(exponent, hn::Zero(U{})), set(1u << 23));
-    const V significand = hn::ShiftLeft<5>(hn::Or(fraction_of(terms[k]), implicit));
-    const V aligned = hn::Shr(significand, hn::Min(hn::Sub(largest, exponent), set(31)));
-    const V negative = as_unsigned(hn::ShiftRight<31>(as_signed(terms[k])));
-    total = hn::Add(total, hn::Sub(hn::Xor(aligned, negative), negative));
-  }
-  const V negative = as_unsigned(hn::ShiftRight<31>(as_signed(total)));
-  const V magnitude = hn::Sub(hn::Xor(total, negative), negative);
-  // The top bit's place by a conversion to float, of a number that rounding cannot carry to the next power of
-  // two.
-  const VI no_carry = as_signed(hn::AndNot(hn::ShiftRight<1>(magnitude), magnitude));
-  const V top = hn::Sub(exponent_of(hn::BitCast(U{}, hn::ConvertTo(F{}, no_carry))), set(127));
-  const V shift = hn::And(hn::Sub(set(30), top), set(31));
-  const V significand = hn::ShiftRight<7>(hn::Shl(magnitude, shift));
-  const V result = pack(sign_of(negative), as_signed(hn::Sub(hn::Add(largest, set(2)), shift)), significand);
-  return hn::IfThenZeroElse(hn::Eq(total, hn::Zero(U{})), result);
+HWY_INLINE V sum(const VF (&terms)[kTerms], V& least) {
+  V largest = hn::BitCast(U{}, hn::Abs(terms[0]));
+  for (std::size_t k = 1; k < kTerms; ++k) largest = hn::Max(largest, hn::BitCast(U{}, hn::Abs(terms[k])));
+  least = hn::Min(least, hn::Sub(largest, set(1)));  // 0 is then the greatest number
+  const V power = hn::And(hn::Max(largest, set(kSmallest)), set(0x7f800000));
+  const VF scale = as_float(hn::Sub(set((127u + 28 + 127) << 23), power));
+  VI total = integer(hn::Mul(terms[0], scale));
+  for (std::size_t k = 1; k < kTerms; ++k) total = hn::Add(total, integer(hn::Mul(terms[k], scale)));
+  const VF unit = as_float(hn::Sub(power, set(28u << 23)));
+  return hn::BitCast(U{}, hn::Mul(hn::ConvertTo(F{}, total), unit));
 }
 
 HWY_INLINE V order(V a) {
@@ -180,122 +194,178 @@ HWY_INLINE V reciprocal_sqrt(V a) {
   return hn::IfThenElse(hn::Eq(exponent, hn::Zero(U{})), set(0x7f800000), result);
 }
 
-// Reads of one operand for the vertices from `i`; remembers whether a lane was INF or NaN.
+// Reads of one operand for the vertices from `i`.
 struct Reader {
   explicit Reader(const Operand& operand) : operand(operand), sign(set(operand.sign)) {}
-  V operator()(std::size_t component, std::size_t i) {
-    const V value = raw(component, i);
-    special = hn::Or(
-        special, as_unsigned(hn::VecFromMask(I{}, hn::Gt(as_signed(exponent_of(value)), hn::Set(I{}, 254)))));
-    return value;
-  }
-  V raw(std::size_t component, std::size_t i) const {
+  V operator()(std::size_t component, std::size_t i) const {
     const auto* bits =
         reinterpret_cast<const std::uint32_t*>(operand.component[component] + i * operand.stride);
     return hn::Xor(hn::Load(U{}, bits), sign);
   }
+  VF number(std::size_t component, std::size_t i) const { return as_float((*this)(component, i)); }
   const Operand& operand;
   V sign;
-  V special = hn::Zero(U{});
 };
 
 struct Sources {
   explicit Sources(const Call& call) : a(call.sources[0]), b(call.sources[1]), c(call.sources[2]) {}
-  bool special() const {
-    const V any = hn::Or(a.special, hn::Or(b.special, c.special));
-    return !hn::AllTrue(U{}, hn::Eq(any, hn::Zero(U{})));
-  }
-  void forget_special() { a.special = b.special = c.special = hn::Zero(U{}); }
   Reader a, b, c;
 };
 
-HWY_INLINE void store(const Call& call, std::size_t i, const V* results, Sources& sources) {
-  if (HWY_UNLIKELY(sources.special())) {
-    run_scalar(call, Arithmetic::nv20, static_cast<int>(i), static_cast<int>(i + hn::Lanes(U{})));
-    sources.forget_special();
-    return;
-  }
-  for (std::size_t k = 0; k < kComponents; ++k)
-    if (call.mask & (1u << k))
-      hn::Store(results[k], U{}, reinterpret_cast<std::uint32_t*>(call.destination + k * kBatch + i));
+bool holds_special(const float* values, std::size_t count) {
+  const auto* bits = reinterpret_cast<const std::uint32_t*>(values);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(U{}))
+    if (any_special(hn::Load(U{}, bits + i))) return true;
+  return false;
 }
 
-// result[k] = function(component k) for the components of the mask.
-template <typename Function>
-HWY_INLINE void each_component(const Call& call, std::size_t count, Sources& sources, Function function) {
+bool special_lanes(const Call& call, std::size_t i) {
+  for (std::size_t k = 0; k < call.source_count; ++k)
+    for (std::size_t c = 0; c < kComponents; ++c)
+      if (any_special(Reader(call.sources[k])(c, i))) return true;
+  return false;
+}
+
+// Lets `compute(i)` store the results of the lanes from i. Where a source is special, or it says false, the
+// scalar code does.
+template <typename Compute>
+HWY_INLINE void each_lanes(const Call& call, std::size_t count, Compute compute) {
+  const bool doubtful = call.has_special_source();
+  bool special = call.component_count != kComponents && *call.special;
   for (std::size_t i = 0; i < count; i += hn::Lanes(U{})) {
-    V results[kComponents] = {hn::Zero(U{}), hn::Zero(U{}), hn::Zero(U{}), hn::Zero(U{})};
-    for (std::size_t k = 0; k < kComponents; ++k)
-      if (call.mask & (1u << k)) results[k] = function(k, i);
-    store(call, i, results, sources);
+    if (HWY_UNLIKELY((doubtful && special_lanes(call, i)) || !compute(i))) {
+      run_scalar(call, Arithmetic::nv20, static_cast<int>(i), static_cast<int>(i + hn::Lanes(U{})));
+      special = true;
+    }
   }
+  *call.special = special;
+}
+
+HWY_INLINE void put(const Call& call, std::size_t k, std::size_t i, V result) {
+  hn::Store(result, U{},
+            reinterpret_cast<std::uint32_t*>(call.destination + call.components[k] * kBatch + i));
+}
+
+template <std::size_t kCount, typename Function>
+HWY_INLINE void each_of(const Call& call, std::size_t count, Function function) {
+  each_lanes(call, count, [&](std::size_t i) HWY_ATTR {
+    V results[kCount], least = set(0xffffffffu);
+    for (std::size_t k = 0; k < kCount; ++k) results[k] = function(call.components[k], i, least);
+    if (HWY_UNLIKELY(!hn::AllFalse(U{}, hn::Lt(least, set(kSmallest - 1))))) return false;
+    for (std::size_t k = 0; k < kCount; ++k) put(call, k, i, results[k]);
+    return true;
+  });
 }
 
 // The same scalar for every component.
 template <typename Function>
-HWY_INLINE void one_scalar(const Call& call, std::size_t count, Sources& sources, Function function) {
-  for (std::size_t i = 0; i < count; i += hn::Lanes(U{})) {
-    const V scalar = function(i);
-    const V results[kComponents] = {scalar, scalar, scalar, scalar};
-    store(call, i, results, sources);
+HWY_INLINE void one_scalar(const Call& call, std::size_t count, Function function) {
+  each_lanes(call, count, [&](std::size_t i) HWY_ATTR {
+    V least = set(0xffffffffu);
+    const V scalar = function(i, least);
+    if (HWY_UNLIKELY(!hn::AllFalse(U{}, hn::Lt(least, set(kSmallest - 1))))) return false;
+    for (std::size_t k = 0; k < call.component_count; ++k) put(call, k, i, scalar);
+    return true;
+  });
+}
+
+// result[k] = function(component k) for the components that are written.
+template <typename Function>
+HWY_INLINE void each_component(const Call& call, std::size_t count, Function function) {
+  switch (call.component_count) {
+    case 1:
+      return one_scalar(call, count, [&](std::size_t i, V& least) HWY_ATTR {
+        return function(call.components[0], i, least);
+      });
+    case 2:
+      return each_of<2>(call, count, function);
+    case 3:
+      return each_of<3>(call, count, function);
+    default:
+      return each_of<4>(call, count, function);
   }
 }
 
+// result[k] = function(component k) of raw bits; it may be special where a source is.
+template <typename Function>
+HWY_INLINE void each_raw(const Call& call, std::size_t count, Function function) {
+  const bool special = (call.component_count != kComponents && *call.special) || call.has_special_source();
+  for (std::size_t i = 0; i < count; i += hn::Lanes(U{})) {
+    V results[kComponents];
+    for (std::size_t k = 0; k < call.component_count; ++k) results[k] = function(call.components[k], i);
+    for (std::size_t k = 0; k < call.component_count; ++k) put(call, k, i, results[k]);
+  }
+  *call.special = special;
+}
+
+// A reciprocal of zero is an INF.
+template <typename Function>
+HWY_INLINE void one_reciprocal(const Call& call, std::size_t count, Function function) {
+  bool special = false;
+  one_scalar(call, count, [&](std::size_t i, V&) HWY_ATTR {
+    const V result = function(i);
+    special |= any_special(result);
+    return result;
+  });
+  *call.special |= special;
+}
+
 template <std::size_t kTerms>
-HWY_INLINE V dot(Sources& s, std::size_t i) {
-  V products[kTerms];
-  for (std::size_t k = 0; k < kTerms; ++k) products[k] = multiply(s.a(k, i), s.b(k, i));
-  return sum(products);
+HWY_INLINE V dot(const Sources& s, std::size_t i, V& least) {
+  VF products[kTerms];
+  for (std::size_t k = 0; k < kTerms; ++k) products[k] = hn::Mul(s.a.number(k, i), s.b.number(k, i));
+  return sum(products, least);
 }
 
 void run_nv20(const Call& call, int vertices) {
   const std::size_t lanes = hn::Lanes(U{});
   const std::size_t count = (static_cast<std::size_t>(vertices) + lanes - 1) / lanes * lanes;
-  Sources s(call);
+  const Sources s(call);
   const V one = set(0x3f800000);
   using std::size_t;
   switch (call.operation) {
     case Operation::add:
-      return each_component(call, count, s, [&](size_t k, size_t i) HWY_ATTR {
-        return sum({s.a(k, i), s.b(k, i)});
+      return each_component(call, count, [&](size_t k, size_t i, V& least) HWY_ATTR {
+        return sum({s.a.number(k, i), s.b.number(k, i)}, least);
       });
     case Operation::multiply:
-      return each_component(call, count, s,
-                            [&](size_t k, size_t i) HWY_ATTR { return multiply(s.a(k, i), s.b(k, i)); });
+      return each_component(call, count,
+                            [&](size_t k, size_t i, V&) HWY_ATTR { return multiply(s.a(k, i), s.b(k, i)); });
     case Operation::multiply_add:
-      return each_component(call, count, s, [&](size_t k, size_t i) HWY_ATTR {
-        return sum({multiply(s.a(k, i), s.b(k, i)), s.c(k, i)});
+      return each_component(call, count, [&](size_t k, size_t i, V& least) HWY_ATTR {
+        return sum({hn::Mul(s.a.number(k, i), s.b.number(k, i)), s.c.number(k, i)}, least);
       });
     case Operation::dot3:
-      return one_scalar(call, count, s, [&](size_t i) HWY_ATTR { return dot<3>(s, i); });
+      return one_scalar(call, count, [&](size_t i, V& least) HWY_ATTR { return dot<3>(s, i, least); });
     case Operation::dot4:
-      return one_scalar(call, count, s, [&](size_t i) HWY_ATTR { return dot<4>(s, i); });
+      return one_scalar(call, count, [&](size_t i, V& least) HWY_ATTR { return dot<4>(s, i, least); });
     case Operation::minimum:
-      return each_component(call, count, s, [&](size_t k, size_t i) HWY_ATTR {
-        const V a = s.a.raw(k, i), b = s.b.raw(k, i);
+      return each_raw(call, count, [&](size_t k, size_t i) HWY_ATTR {
+        const V a = s.a(k, i), b = s.b(k, i);
         return hn::IfThenElse(hn::Lt(order(a), order(b)), a, b);
       });
     case Operation::maximum:
-      return each_component(call, count, s, [&](size_t k, size_t i) HWY_ATTR {
-        const V a = s.a.raw(k, i), b = s.b.raw(k, i);
+      return each_raw(call, count, [&](size_t k, size_t i) HWY_ATTR {
+        const V a = s.a(k, i), b = s.b(k, i);
         return hn::IfThenElse(hn::Lt(order(a), order(b)), b, a);
       });
     case Operation::less:
-      return each_component(call, count, s, [&](size_t k, size_t i) HWY_ATTR {
-        return hn::IfThenElseZero(hn::Lt(order(s.a.raw(k, i)), order(s.b.raw(k, i))), one);
+      return each_raw(call, count, [&](size_t k, size_t i) HWY_ATTR {
+        return hn::IfThenElseZero(hn::Lt(order(s.a(k, i)), order(s.b(k, i))), one);
       });
     case Operation::greater_equal:
-      return each_component(call, count, s, [&](size_t k, size_t i) HWY_ATTR {
-        return hn::IfThenZeroElse(hn::Lt(order(s.a.raw(k, i)), order(s.b.raw(k, i))), one);
+      return each_raw(call, count, [&](size_t k, size_t i) HWY_ATTR {
+        return hn::IfThenZeroElse(hn::Lt(order(s.a(k, i)), order(s.b(k, i))), one);
       });
     case Operation::reciprocal:
-      return one_scalar(call, count, s, [&](size_t i) HWY_ATTR { return reciprocal(s.a(0, i)); });
+      return one_reciprocal(call, count, [&](size_t i) HWY_ATTR { return reciprocal(s.a(0, i)); });
     case Operation::reciprocal_sqrt:
-      return one_scalar(call, count, s, [&](size_t i) HWY_ATTR { return reciprocal_sqrt(s.a(0, i)); });
+      return one_reciprocal(call, count, [&](size_t i) HWY_ATTR { return reciprocal_sqrt(s.a(0, i)); });
     case Operation::move:
-      return run_simd_ieee(call, vertices);  // raw bits in either arithmetic
+      return each_raw(call, count, [&](size_t k, size_t i) HWY_ATTR { return s.a(k, i); });
     default:
-      return run_scalar(call, Arithmetic::nv20, 0, vertices);
+      run_scalar(call, Arithmetic::nv20, 0, vertices);
+      *call.special = true;  // it may be
   }
 }
 
@@ -306,6 +376,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace splatscope::vertex {
 HWY_EXPORT(run_nv20);
+HWY_EXPORT(holds_special);
+
+bool holds_special(const float* values, std::size_t count) {
+  return HWY_DYNAMIC_DISPATCH(holds_special)(values, count);
+}
 
 void run_simd_nv20(const Call& call, int count) {
   HWY_DYNAMIC_DISPATCH(run_nv20)(call, count);

@@ -5,6 +5,7 @@
 
 #include "model/error.h"
 #include "model/isa/opcode.h"
+#include "model/vertex/processor_mode.h"
 
 namespace splatscope::vertex {
 namespace {
@@ -157,15 +158,19 @@ Operand resolve_source(const StepSource& source, const Workspace& workspace, con
     switch (source.place) {
       case Place::temporary:
         operand.component[lane] = workspace.temporaries[source.index][component];
+        operand.special = &workspace.special.temporaries[source.index];
         break;
       case Place::input:
         operand.component[lane] = in.v[source.index][component];
+        operand.special = &workspace.special.inputs[source.index];
         break;
       case Place::constant:
         operand.component[lane] = workspace.broadcast[source.index][component];
+        operand.special = &workspace.special.constants[source.index];
         break;
       default:
         operand.component[lane] = workspace.scratch[component];
+        operand.special = &workspace.special.scratch;
         break;
     }
   }
@@ -187,16 +192,21 @@ std::vector<Step> make_steps(const isa::Program& program) {
 Call resolve(const Step& step, Workspace& workspace, const InputBatch& in, OutputBatch& out) {
   Call call;
   call.operation = step.operation;
-  call.mask = step.mask;
-  call.destination = step.destination_place == Place::temporary
-                         ? workspace.temporaries[step.destination_index][0]
-                         : out.o[step.destination_index][0];
+  for (std::uint8_t component = 0; component < 4; ++component)
+    if (step.mask & (1u << component)) call.components[call.component_count++] = component;
+  const bool temporary = step.destination_place == Place::temporary;
+  call.destination =
+      temporary ? workspace.temporaries[step.destination_index][0] : out.o[step.destination_index][0];
+  call.special =
+      temporary ? &workspace.special.temporaries[step.destination_index] : &workspace.special.outputs;
+  call.source_count = step.source_count;
   for (std::size_t i = 0; i < step.source_count; ++i)
     call.sources[i] = resolve_source(step.sources[i], workspace, in);
   return call;
 }
 
 void run_address_step(const Step& step, Workspace& workspace, const InputBatch& in, int count) {
+  const DefaultMode mode;
   if (step.operation == Operation::load_address) {
     const Operand source = resolve_source(step.sources[0], workspace, in);
     for (int lane = 0; lane < count; ++lane) {
@@ -217,6 +227,7 @@ void run_address_step(const Step& step, Workspace& workspace, const InputBatch& 
 }
 
 void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last) {
+  const DefaultMode mode;
   for (int lane = first; lane < last; ++lane) {
     std::array<Vec4, 3> sources{};
     for (std::size_t i = 0; i < 3; ++i)
@@ -225,9 +236,9 @@ void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last) {
           sources[i][component] =
               negated(values[static_cast<std::size_t>(lane) * call.sources[i].stride], call.sources[i].sign);
     const Vec4 result = evaluate(call.operation, arithmetic, sources);
-    for (std::size_t component = 0; component < 4; ++component)
-      if (call.mask & (1u << component))
-        call.destination[component * kBatch + static_cast<std::size_t>(lane)] = result[component];
+    for (std::size_t k = 0; k < call.component_count; ++k)
+      call.destination[call.components[k] * kBatch + static_cast<std::size_t>(lane)] =
+          result[call.components[k]];
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -63,8 +65,18 @@ inline constexpr int kTemporaries = 12;
 inline constexpr int kConstants = 96;
 inline constexpr int kBroadcast = 16;  // floats of the widest SIMD register
 
+// Which registers may hold an INF, a NaN or a denormal in some lane, as far as the nv20 code has to know.
+struct SpecialRegisters {
+  std::array<bool, kTemporaries> temporaries{};
+  std::array<bool, 16> inputs{};
+  std::array<bool, kConstants> constants{};
+  bool scratch = true;
+  bool outputs = false;  // written, never read
+};
+
 // The registers of one batch while it runs.
 struct Workspace {
+  SpecialRegisters special;
   alignas(64) float temporaries[kTemporaries][4][kBatch];
   alignas(64) float scratch[4][kBatch];
   alignas(64) float broadcast[kConstants][4][kBroadcast];  // constants, once a SIMD lane
@@ -77,30 +89,49 @@ struct Operand {
   std::array<const float*, 4> component{};  // after the swizzle
   std::size_t stride = 1;                   // 0: a constant, the same kBroadcast floats for every vertex
   std::uint32_t sign = 0;                   // 0x80000000 where negated
+  const bool* special = nullptr;            // of the register
 };
 
 struct Call {
   Operation operation = Operation::move;
-  std::uint8_t mask = 0xf;
-  float* destination = nullptr;  // [4][kBatch]
+  std::size_t component_count = 0;
+  std::array<std::uint8_t, 4> components{};  // that are written: the first `component_count`
+  float* destination = nullptr;              // [4][kBatch]
+  bool* special = nullptr;                   // of the destination
+  std::size_t source_count = 0;
   std::array<Operand, 3> sources;
+
+  bool has_special_source() const {
+    return std::any_of(sources.begin(), sources.begin() + static_cast<std::ptrdiff_t>(source_count),
+                       [](const Operand& source) { return *source.special; });
+  }
 };
 
 Call resolve(const Step& step, Workspace& workspace, const InputBatch& in, OutputBatch& out);
 
-// load_address and gather_constant, which no SIMD code needs, for vertices 0..count-1.
+// load_address and gather_constant, which no SIMD code needs, for vertices 0..count-1, in the default mode.
 void run_address_step(const Step& step, Workspace& workspace, const InputBatch& in, int count);
 
 // All four components of one result in the given arithmetic: the scalar reference. Components that do not
 // belong to the operation's result are unspecified.
 Vec4 evaluate(Operation operation, Arithmetic arithmetic, const std::array<Vec4, 3>& sources);
 
-// One call for vertices first..last-1 by `evaluate`.
+// One call for vertices first..last-1 by `evaluate`, in the processor's default mode whatever the mode is.
 void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last);
 
 // One call for vertices 0..count-1 (rounded up to whole SIMD registers) on the best SIMD target of this
-// machine.
+// machine. nv20: in the mode of Nv20Mode.
 void run_simd_ieee(const Call& call, int count);
 void run_simd_nv20(const Call& call, int count);
+
+// Whether one of `count` aligned values (a multiple of kBroadcast) is an INF, a NaN or a denormal, or the
+// nv20 code does not care.
+bool holds_special(const float* values, std::size_t count);
+
+// Whether a value is an INF, a NaN or a denormal.
+inline bool is_special(float value) {
+  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(value) & 0x7fffffffu;
+  return magnitude != 0 && magnitude - 0x00800000u >= 0x7f000000u;
+}
 
 }  // namespace splatscope::vertex

@@ -1,6 +1,7 @@
 #include "model/vertex/vertex_fetch.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace splatscope::vertex {
@@ -8,46 +9,41 @@ namespace {
 
 constexpr Vec4 kDefault{0, 0, 0, 1};
 
-template <typename T>
-void expand(const std::byte* bytes, std::size_t count, Vec4& value) {
-  for (std::size_t i = 0; i < count; ++i) {
-    T element;
-    std::memcpy(&element, bytes + i * sizeof(T), sizeof(T));
-    value[i] = static_cast<float>(element);
+// `kCount` elements of every vertex, each by `convert`.
+template <typename Element, std::size_t kCount, typename Convert>
+void gather(const std::byte* first, std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers,
+            float (*out)[kBatch], Convert convert) {
+  for (std::size_t lane = 0; lane < vertex_numbers.size(); ++lane) {
+    std::array<Element, kCount> elements;
+    std::memcpy(&elements, first + std::size_t{vertex_numbers[lane]} * stride, sizeof elements);
+    for (std::size_t c = 0; c < kCount; ++c) out[c][lane] = convert(elements[c]);
   }
 }
 
-Vec4 expand(VertexFormat format, const std::byte* bytes) {
-  Vec4 value = kDefault;
+void fetch(VertexFormat format, const std::byte* first, std::uint32_t stride,
+           std::span<const std::uint32_t> vertex_numbers, float (*out)[kBatch]) {
+  const auto as_it_is = [](auto element) { return static_cast<float>(element); };
   switch (format) {
     case VertexFormat::float1:
-      expand<float>(bytes, 1, value);
-      break;
+      return gather<float, 1>(first, stride, vertex_numbers, out, as_it_is);
     case VertexFormat::float2:
-      expand<float>(bytes, 2, value);
-      break;
+      return gather<float, 2>(first, stride, vertex_numbers, out, as_it_is);
     case VertexFormat::float3:
-      expand<float>(bytes, 3, value);
-      break;
+      return gather<float, 3>(first, stride, vertex_numbers, out, as_it_is);
     case VertexFormat::float4:
-      expand<float>(bytes, 4, value);
-      break;
+      return gather<float, 4>(first, stride, vertex_numbers, out, as_it_is);
     case VertexFormat::ubyte4:
-      expand<std::uint8_t>(bytes, 4, value);
-      break;
+      return gather<std::uint8_t, 4>(first, stride, vertex_numbers, out, as_it_is);
     case VertexFormat::short2:
-      expand<std::int16_t>(bytes, 2, value);
-      break;
+      return gather<std::int16_t, 2>(first, stride, vertex_numbers, out, as_it_is);
     case VertexFormat::short4:
-      expand<std::int16_t>(bytes, 4, value);
-      break;
+      return gather<std::int16_t, 4>(first, stride, vertex_numbers, out, as_it_is);
     case VertexFormat::d3dcolor:
-      expand<std::uint8_t>(bytes, 4, value);
-      std::swap(value[0], value[2]);
-      for (float& component : value) component /= 255.0f;
-      break;
+      gather<std::uint8_t, 4>(first, stride, vertex_numbers, out,
+                              [](std::uint8_t element) { return static_cast<float>(element) / 255.0f; });
+      std::swap_ranges(out[0], out[0] + vertex_numbers.size(), out[2]);
+      return;
   }
-  return value;
 }
 
 }  // namespace
@@ -70,20 +66,16 @@ std::uint32_t size_of(VertexFormat format) {
   return 0;
 }
 
-void fetch(std::span<const VertexAttribute> attributes, std::span<const std::byte> buffer,
-           std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers, InputBatch& out) {
-  const auto count = vertex_numbers.size();
+void fill_defaults(InputBatch& out) {
   for (auto& input : out.v)
     for (std::size_t component = 0; component < 4; ++component)
-      std::fill_n(input[component], count, kDefault[component]);
-  for (const VertexAttribute& attribute : attributes) {
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const std::size_t offset = std::size_t{vertex_numbers[lane]} * stride + attribute.offset;
-      const Vec4 value = expand(attribute.format, buffer.data() + offset);
-      for (std::size_t component = 0; component < 4; ++component)
-        out.v[attribute.input][component][lane] = value[component];
-    }
-  }
+      std::fill_n(input[component], kBatch, kDefault[component]);
+}
+
+void fetch(std::span<const VertexAttribute> attributes, std::span<const std::byte> buffer,
+           std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers, InputBatch& out) {
+  for (const VertexAttribute& attribute : attributes)
+    fetch(attribute.format, buffer.data() + attribute.offset, stride, vertex_numbers, out.v[attribute.input]);
 }
 
 }  // namespace splatscope::vertex

@@ -12,11 +12,13 @@ namespace splatscope::vertex {
 // Bytes that one attribute of this format takes.
 std::uint32_t size_of(VertexFormat format);
 
+// What components that no fetch writes hold, in all lanes: 0, 0, 0, 1.
+void fill_defaults(InputBatch& out);
+
 // The vertices `vertex_numbers` (at most kBatch) of a buffer with `stride` bytes a vertex into lanes 0, 1,
-// ... of `out`. Components that a format lacks are 0, 0, 0, 1, as are inputs without an attribute. d3dcolor
-// is blue, green, red, alpha in memory and comes out as r g b a over 255; ubyte4, short2 and short4 are
-// converted to floats as they are. The caller has checked that every attribute of every vertex lies within
-// the buffer.
+// ... of `out`: the components that each attribute's format has. d3dcolor is blue, green, red, alpha in
+// memory and comes out as r g b a over 255; ubyte4, short2 and short4 are converted to floats as they are.
+// The caller has checked that every attribute of every vertex lies within the buffer.
 void fetch(std::span<const VertexAttribute> attributes, std::span<const std::byte> buffer,
            std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers, InputBatch& out);
 

@@ -19,6 +19,7 @@ Vec4 fetched(VertexFormat format, const std::array<T, N>& elements) {
   const VertexAttribute attribute{3, format, 4};
   const std::uint32_t number = 1;
   const auto batch = std::make_unique<InputBatch>();
+  fill_defaults(*batch);
   fetch({&attribute, 1}, buffer, 24, {&number, 1}, *batch);
   const auto& v3 = batch->v[3];
   return {v3[0][0], v3[1][0], v3[2][0], v3[3][0]};
@@ -46,9 +47,8 @@ TEST(VertexFetch, ColorIsBlueFirstInMemoryAndOver255) {
 
 TEST(VertexFetch, InputsWithoutAnAttributeHaveTheDefault) {
   const auto batch = std::make_unique<InputBatch>();
-  const std::array<std::uint32_t, 3> numbers{0, 1, 2};
-  fetch({}, {}, 0, numbers, *batch);
-  for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+  fill_defaults(*batch);
+  for (std::size_t lane = 0; lane < kBatch; ++lane) {
     EXPECT_EQ(batch->v[15][0][lane], 0.0f);
     EXPECT_EQ(batch->v[15][3][lane], 1.0f);
   }

@@ -41,9 +41,29 @@ class VertexProgram {
   VertexProgram(VertexProgram&&) noexcept;
   VertexProgram& operator=(VertexProgram&&) noexcept;
 
+  bool reads(int input) const;  // v0..v15
+
   // Runs vertices 0..count-1 (count <= kBatch). Constants from c0; those not given are 0; `def` in the
   // program wins.
   void run(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out, int count) const;
+
+  // The program with its constants and the registers of a batch, for batch after batch. It outlives this.
+  class Bound {
+   public:
+    Bound(const VertexProgram& program, std::span<const Vec4> constants);
+    ~Bound();
+    Bound(Bound&&) noexcept;
+    Bound& operator=(Bound&&) noexcept;
+
+    InputBatch& input();
+    const OutputBatch& output() const;
+    // Runs vertices 0..count-1 (count <= kBatch) of input().
+    void run(int count);
+
+   private:
+    struct State;
+    std::unique_ptr<State> state_;
+  };
 
   // The same by the plain scalar interpreter that the SIMD code is checked against.
   void run_scalar(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out, int count) const;
@@ -54,6 +74,8 @@ class VertexProgram {
 
  private:
   struct Decoded;
+  class Execution;
+  void run_batch(Execution& execution, int count) const;
   std::unique_ptr<Decoded> decoded_;
 };
 

@@ -1,7 +1,6 @@
 #include <benchmark/benchmark.h>
 
 #include <fstream>
-#include <memory>
 #include <random>
 #include <sstream>
 #include <string>
@@ -19,21 +18,20 @@ void run_splat_ewa(benchmark::State& state, Arithmetic arithmetic) {
   text << file.rdbuf();
   const isa::Program source = isa::load(text.str(), "splat_ewa.vs");
   const VertexProgram program(source, arithmetic);
-  const auto in = std::make_unique<InputBatch>();
-  const auto out = std::make_unique<OutputBatch>();
   std::mt19937 random(1);
   std::uniform_real_distribution<float> value(0.5f, 2.0f);
-  for (auto& input : in->v)
-    for (auto& component : input)
-      for (float& lane : component) lane = value(random);
   std::vector<Vec4> constants(96);
   for (Vec4& constant : constants)
     for (float& component : constant) component = value(random);
+  VertexProgram::Bound bound(program, constants);
+  for (auto& input : bound.input().v)
+    for (auto& component : input)
+      for (float& lane : component) lane = value(random);
   constexpr int kVertices = 262144;
   for (auto _ : state)
     for (int first = 0; first < kVertices; first += kBatch) {
-      program.run(constants, *in, *out, kBatch);
-      benchmark::DoNotOptimize(out->o[oPos][0][0]);
+      bound.run(kBatch);
+      benchmark::DoNotOptimize(bound.output().o[oPos][0][0]);
     }
   const double instructions = static_cast<double>(state.iterations()) * kVertices * isa::slot_count(source);
   state.counters["per_vertex_instruction"] =

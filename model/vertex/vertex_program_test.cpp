@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,6 +11,7 @@
 #include <string>
 
 #include "model/isa/opcode.h"
+#include "model/testing/simd_targets.h"
 
 namespace splatscope::vertex {
 namespace {
@@ -138,7 +138,6 @@ float random_value(std::mt19937& random, Values values) {
 void compare_simd_targets_with_scalar(Arithmetic arithmetic) {
   const unsigned seed = std::random_device{}();
   std::mt19937 random(seed);
-  const std::int64_t available = hwy::SupportedTargets() & HWY_TARGETS;
   for (int trial = 0; trial < 100; ++trial) {
     const std::string text = RandomProgram(random).text();
     const VertexProgram program(isa::assemble(text, "random"), arithmetic);
@@ -151,19 +150,16 @@ void compare_simd_targets_with_scalar(Arithmetic arithmetic) {
     const auto scalar = std::make_unique<OutputBatch>();
     const int count = 1 + static_cast<int>(random() % kBatch);
     program.run_scalar(constants, *batch.in, *scalar, count);
-    for (std::int64_t targets = available; targets != 0; targets &= targets - 1) {
-      hwy::SetSupportedTargetsForTest(targets & -targets);
+    testing::on_each_simd_target([&] {
       program.run(constants, *batch.in, *batch.out, count);
       for (int o = 0; o < kOutputs; ++o)
         for (int c = 0; c < 4; ++c)
           for (int lane = 0; lane < count; ++lane)
             ASSERT_EQ(std::bit_cast<std::uint32_t>(batch.out->o[o][c][lane]),
                       std::bit_cast<std::uint32_t>(scalar->o[o][c][lane]))
-                << "seed " << seed << ", target " << hwy::TargetName(targets & -targets) << ", output " << o
-                << '.' << c << ", vertex " << lane << '\n'
+                << "seed " << seed << ", output " << o << '.' << c << ", vertex " << lane << '\n'
                 << text;
-    }
-    hwy::SetSupportedTargetsForTest(0);
+    });
   }
 }
 

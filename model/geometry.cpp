@@ -1,0 +1,166 @@
+#include "model/geometry.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
+#include "model/output/output.h"
+#include "model/vertex/vertex_fetch.h"
+
+namespace splatscope {
+namespace {
+
+constexpr std::uint32_t kCorners = 3;
+constexpr std::size_t kIndices = 1 << 16;
+
+}  // namespace
+
+GeometryBatch::GeometryBatch(const DrawBindings& bindings, const RenderOptions& options,
+                             const primitive::Viewport& viewport)
+    : bindings_(bindings),
+      options_(options),
+      viewport_(viewport),
+      program_(bindings.vertex, bindings.draw.constants),
+      positions_(kVertices),
+      attributes_(kVertices) {
+  vertex::fill_defaults(program_.input());
+  std::ranges::copy_if(bindings.draw.attributes, std::back_inserter(inputs_),
+                       [&](const VertexAttribute& a) { return bindings.vertex.reads(a.input); });
+  for (auto* values : {&projected_.x, &projected_.y, &projected_.z, &projected_.inverse_w})
+    values->resize(kVertices);
+  projected_.outside.resize(kVertices);
+}
+
+void GeometryBatch::clear() {
+  vertices.clear();
+  shaded_vertices.clear();
+  triangles.clear();
+  piece_corners_.clear();
+  clipped_attributes_.clear();
+}
+
+void GeometryBatch::process() {
+  shade();
+  for (BatchTriangle& triangle : triangles) assemble(triangle);
+  set_up();
+}
+
+void GeometryBatch::shade() {
+  static_assert(kVertices % vertex::kBatch == 0 && vertex::kBatch % primitive::kProjectionLanes == 0);
+  const vertex::OutputBatch& out = program_.output();
+  const auto& position = out.o[vertex::oPos];
+  for (std::size_t first = 0; first < vertices.size(); first += vertex::kBatch) {
+    const std::size_t count = std::min<std::size_t>(vertices.size() - first, vertex::kBatch);
+    vertex::fetch(inputs_, bindings_.vertices.bytes, bindings_.draw.vertex_stride,
+                  std::span(vertices).subspan(first, count), program_.input());
+    program_.run(static_cast<int>(count));
+    primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
+                       first);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      for (std::size_t c = 0; c < 4; ++c) positions_[first + lane][c] = position[c][lane];
+    for (const primitive::UsedAttribute& used : bindings_.attributes) {
+      const auto attribute = static_cast<std::size_t>(used.attribute);
+      const auto& values = out.o[vertex::oD0 + used.attribute];   // both orders are D0, D1, T0, T1, ...
+      const bool color = used.attribute <= primitive::kSpecular;  // saturated on the way out of the unit
+      for (std::size_t lane = 0; lane < count; ++lane)
+        for (std::size_t c = 0; c < 4; ++c)
+          attributes_[first + lane][attribute][c] =
+              color ? output::saturate(values[c][lane]) : values[c][lane];
+    }
+  }
+}
+
+void GeometryBatch::assemble(BatchTriangle& triangle) {
+  const auto [a, b, c] = triangle.vertices;
+  const auto& outside = projected_.outside;
+  if (((outside[a] | outside[b] | outside[c]) & primitive::kNotPlain) != 0) return assemble_slowly(triangle);
+  if ((outside[a] & outside[b] & outside[c]) != 0) {
+    triangle.outcome = TriangleOutcome::outside_frustum;
+    return;
+  }
+  triangle.pieces = 1;
+  add_piece({&attributes_[a], &attributes_[b], &attributes_[c]});
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    const std::size_t i = triangle.vertices[corner];
+    corners_.set(waiting_ - 1, corner, projected_.x[i], projected_.y[i], projected_.z[i],
+                 projected_.inverse_w[i]);
+  }
+}
+
+// With a corner that is not plain: rejected, or clipped.
+void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
+  primitive::ClipTriangle corners;
+  for (std::size_t corner = 0; corner < kCorners; ++corner)
+    corners[corner] = {positions_[triangle.vertices[corner]], attributes_[triangle.vertices[corner]]};
+  const primitive::Assembled assembled =
+      primitive::assemble(corners, viewport_, bindings_.attributes, clipped_);
+  triangle.outcome = assembled.outcome;
+  triangle.pieces = static_cast<std::uint8_t>(assembled.pieces);
+  for (std::size_t piece = 0; piece < triangle.pieces; ++piece) {
+    std::array<const raster::Attributes*, kCorners> attributes{};
+    for (std::size_t corner = 0; corner < kCorners; ++corner)
+      attributes[corner] = &clipped_attributes_.emplace_back(clipped_[piece][corner].attributes);
+    add_piece(attributes);
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      const primitive::WindowVertex& vertex = clipped_[piece][corner];
+      corners_.set(waiting_ - 1, corner, vertex.x, vertex.y, vertex.z, vertex.inverse_w);
+    }
+  }
+}
+
+void GeometryBatch::add_piece(const std::array<const raster::Attributes*, 3>& corners) {
+  if (waiting_ == raster::Corners::kCapacity) set_up();
+  piece_corners_.push_back(corners);
+  ++waiting_;
+}
+
+void GeometryBatch::set_up() {
+  if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
+  const int bits = options_.formats.subpixel_bits;
+  raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits),
+                 std::span(setups_).subspan(piece_corners_.size() - waiting_, waiting_));
+  waiting_ = 0;
+}
+
+Indices::Indices(const DrawBindings& bindings, int cache_entries)
+    : bindings_(bindings), cache_entries_(static_cast<std::uint32_t>(cache_entries)), known_(kIndices) {}
+
+std::uint32_t Indices::index_at(std::uint32_t position) const {
+  std::uint16_t index;
+  std::memcpy(&index, bindings_.indices.bytes.data() + std::size_t{position} * sizeof index, sizeof index);
+  return index;
+}
+
+std::uint16_t Indices::place_of(std::uint32_t index, GeometryBatch& batch, std::uint8_t& new_vertices) {
+  Known& known = known_[index];
+  const std::uint32_t number = bindings_.draw.base_vertex + index;
+  if (known.inserted == 0 || shaded_ - (known.inserted - 1) > cache_entries_) {
+    batch.shaded_vertices.push_back(number);
+    known.inserted = ++shaded_;
+    ++new_vertices;
+  }
+  if (known.batch != batch_) {
+    known.batch = batch_;
+    known.place = static_cast<std::uint16_t>(batch.vertices.size());
+    batch.vertices.push_back(number);
+  }
+  return known.place;
+}
+
+bool Indices::fill(GeometryBatch& batch) {
+  batch.clear();
+  ++batch_;
+  const Draw& draw = bindings_.draw;
+  while (position_ + kCorners <= draw.index_count &&
+         batch.vertices.size() + kCorners <= GeometryBatch::kVertices) {
+    BatchTriangle& triangle = batch.triangles.emplace_back();
+    for (std::uint32_t corner = 0; corner < kCorners; ++corner) {
+      triangle.vertices[corner] =
+          place_of(index_at(draw.first_index + position_ + corner), batch, triangle.new_vertices);
+    }
+    position_ += kCorners;
+  }
+  return !batch.triangles.empty();
+}
+
+}  // namespace splatscope

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "model/draw.h"
+#include "model/raster/interpolate.h"
+
+// From indices to triangles that are set up, a batch at a time. A batch knows nothing of the others: a vertex
+// that an earlier batch has too is shaded again, to the same bits. So batches can be worked on at once.
+namespace splatscope {
+
+// A triangle on the way: what is known of it before it is rasterised.
+struct BatchTriangle {
+  std::array<std::uint16_t, 3> vertices{};  // places in the batch
+  std::uint8_t new_vertices = 0;            // not found in the post-transform FIFO
+  std::uint8_t pieces = 0;                  // after clipping, before culling
+  TriangleOutcome outcome = TriangleOutcome::drawn;
+};
+
+// A piece of a triangle: mostly the triangle itself.
+struct Piece {
+  const raster::TriangleSetup& setup;
+  const std::array<const raster::Attributes*, 3>& corners;
+};
+
+class GeometryBatch {
+ public:
+  static constexpr std::size_t kVertices = 512;
+
+  GeometryBatch(const DrawBindings& bindings, const RenderOptions& options,
+                const primitive::Viewport& viewport);
+
+  // ---- filled by Indices
+  std::vector<std::uint32_t> vertices;         // vertex numbers, base_vertex added
+  std::vector<std::uint32_t> shaded_vertices;  // of these, what the machine shades, in order
+  std::vector<BatchTriangle> triangles;
+  void clear();
+
+  // Shades the vertices, assembles and sets up the triangles.
+  void process();
+
+  // The pieces of all triangles, in order.
+  Piece piece(std::size_t i) const { return {setups_[i], piece_corners_[i]}; }
+
+ private:
+  void shade();
+  void assemble(BatchTriangle& triangle);
+  void assemble_slowly(BatchTriangle& triangle);
+  void add_piece(const std::array<const raster::Attributes*, 3>& corners);
+  void set_up();
+
+  const DrawBindings& bindings_;
+  const RenderOptions& options_;
+  primitive::Viewport viewport_;
+  std::vector<VertexAttribute> inputs_;  // that the program reads
+  vertex::VertexProgram::Bound program_;
+  std::vector<Vec4> positions_;
+  std::vector<raster::Attributes> attributes_;
+  primitive::ProjectedVertices projected_;
+  std::array<primitive::WindowTriangle, primitive::kMaxPieces> clipped_;
+  std::deque<raster::Attributes> clipped_attributes_;
+  raster::Corners corners_;                    // of the last pieces, which are not set up yet
+  std::size_t waiting_ = 0;                    // how many these are
+  std::vector<raster::TriangleSetup> setups_;  // of each piece; those behind the last one are left over
+  std::vector<std::array<const raster::Attributes*, 3>> piece_corners_;
+};
+
+// Walks the indices of a draw with the post-transform FIFO, batch by batch.
+class Indices {
+ public:
+  Indices(const DrawBindings& bindings, int cache_entries);
+  // False: no triangle is left.
+  bool fill(GeometryBatch& batch);
+
+ private:
+  struct Known {                 // of an index
+    std::uint32_t inserted = 0;  // into the FIFO: 0 never, else 1 + its place in the order of shading
+    std::uint32_t batch = 0;     // the last one it was in
+    std::uint16_t place = 0;     // there
+  };
+  std::uint32_t index_at(std::uint32_t position) const;
+  std::uint16_t place_of(std::uint32_t index, GeometryBatch& batch, std::uint8_t& new_vertices);
+
+  const DrawBindings& bindings_;
+  std::uint32_t cache_entries_;
+  std::vector<Known> known_;
+  std::uint32_t position_ = 0;  // in the draw
+  std::uint32_t batch_ = 0;
+  std::uint32_t shaded_ = 0;
+};
+
+}  // namespace splatscope

@@ -1,0 +1,185 @@
+// Triangle setup on SIMD registers of doubles, compiled once a target and chosen at run time (Highway). All
+// of the grid's arithmetic is on integers under 2^53, so exact; every target gives the same bits.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "model/raster/simd_setup.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+#include "model/raster/raster.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace splatscope::raster::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, 8>;
+using F = hn::Rebind<float, D>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+constexpr std::size_t kMaxLanes = 8;
+
+HWY_INLINE V set(double value) {
+  return hn::Set(D{}, value);
+}
+
+struct Points {
+  V x[3], y[3];
+};
+
+// The results of one register of triangles, on their way into structures.
+struct alignas(64) Lanes {
+  double edge_origin[3][kMaxLanes], edge_dx[3][kMaxLanes], edge_dy[3][kMaxLanes];
+  double left[kMaxLanes], top[kMaxLanes], right[kMaxLanes], bottom[kMaxLanes];
+  double winding[kMaxLanes];
+  float planes[4][3][kMaxLanes];
+};
+
+struct Grid {
+  Grid(int subpixel_bits)  // twice as fine, so that pixel centres lie on it for 0 subpixel bits too
+      : steps(set(1 << subpixel_bits)),
+        pixel(set(2 << subpixel_bits)),
+        inverse(set(1.0 / (2 << subpixel_bits))) {}
+  V snap(V coordinate) const {
+    const V below = hn::Floor(hn::Mul(coordinate, steps));
+    return hn::Add(below, below);
+  }
+  // The first pixel whose centre is not left of (above) a coordinate on the grid.
+  V first_pixel(V coordinate) const {
+    const V half = hn::Mul(pixel, set(0.5));
+    return hn::Floor(hn::Mul(hn::Add(coordinate, hn::Sub(half, set(1))), inverse));
+  }
+  V steps, pixel, inverse;
+};
+
+HWY_INLINE void exchange(M mask, V& a, V& b) {
+  const V first = hn::IfThenElse(mask, b, a);
+  b = hn::IfThenElse(mask, a, b);
+  a = first;
+}
+
+HWY_INLINE void store_edge(const Grid& grid, V from_x, V from_y, V to_x, V to_y, V centre_x, V centre_y,
+                           Lanes& out, std::size_t e) {
+  const V dx = hn::Sub(to_x, from_x), dy = hn::Sub(to_y, from_y), zero = hn::Zero(D{});
+  const M top_or_left = hn::Or(hn::Lt(dy, zero), hn::And(hn::Eq(dy, zero), hn::Gt(dx, zero)));
+  const V at_centre = hn::Sub(hn::Mul(dx, hn::Sub(centre_y, from_y)), hn::Mul(dy, hn::Sub(centre_x, from_x)));
+  const V origin = hn::Sub(at_centre, hn::IfThenZeroElse(top_or_left, set(1)));
+  hn::Store(hn::Floor(hn::Mul(origin, grid.inverse)), D{}, out.edge_origin[e]);
+  hn::Store(hn::Neg(dy), D{}, out.edge_dx[e]);
+  hn::Store(dx, D{}, out.edge_dy[e]);
+}
+
+// Rectangle, edges and winding.
+HWY_INLINE void set_up_coverage(Points p, const Grid& grid, const primitive::Viewport& viewport, Lanes& out) {
+  const auto least = [](const V* v) HWY_ATTR { return hn::Min(hn::Min(v[0], v[1]), v[2]); };
+  const auto greatest = [](const V* v) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
+  const V zero = hn::Zero(D{}), one = set(1);
+  const V left = hn::Max(zero, grid.first_pixel(least(p.x)));
+  const V top = hn::Max(zero, grid.first_pixel(least(p.y)));
+  hn::Store(left, D{}, out.left);
+  hn::Store(top, D{}, out.top);
+  hn::Store(hn::Min(set(viewport.width), grid.first_pixel(hn::Add(greatest(p.x), one))), D{}, out.right);
+  hn::Store(hn::Min(set(viewport.height), grid.first_pixel(hn::Add(greatest(p.y), one))), D{}, out.bottom);
+
+  // Twice the signed area; positive where the corners run clockwise in the window (y points down).
+  const V area = hn::Sub(hn::Mul(hn::Sub(p.x[1], p.x[0]), hn::Sub(p.y[2], p.y[0])),
+                         hn::Mul(hn::Sub(p.y[1], p.y[0]), hn::Sub(p.x[2], p.x[0])));
+  hn::Store(hn::Sub(hn::IfThenElseZero(hn::Gt(area, zero), one), hn::IfThenElseZero(hn::Lt(area, zero), one)),
+            D{}, out.winding);
+  exchange(hn::Lt(area, zero), p.x[1], p.x[2]);
+  exchange(hn::Lt(area, zero), p.y[1], p.y[2]);
+  const V half = hn::Mul(grid.pixel, set(0.5));
+  const V centre_x = hn::Add(hn::Mul(left, grid.pixel), half),
+          centre_y = hn::Add(hn::Mul(top, grid.pixel), half);
+  for (std::size_t e = 0; e < 3; ++e) {
+    const std::size_t next = (e + 1) % 3;
+    store_edge(grid, p.x[e], p.y[e], p.x[next], p.y[next], centre_x, centre_y, out, e);
+  }
+}
+
+// A plane through its values at the corners, by the planes of the barycentrics.
+struct Linear {
+  V origin, dx, dy;
+};
+HWY_INLINE void store_plane(V constant, V a1, V a2, const Linear& l1, const Linear& l2,
+                            float (&out)[3][kMaxLanes]) {
+  const auto put = [](V value, float* to) HWY_ATTR { hn::Store(hn::DemoteTo(F{}, value), F{}, to); };
+  put(hn::Add(hn::Add(constant, hn::Mul(a1, l1.origin)), hn::Mul(a2, l2.origin)), out[0]);
+  put(hn::Add(hn::Mul(a1, l1.dx), hn::Mul(a2, l2.dx)), out[1]);
+  put(hn::Add(hn::Mul(a1, l1.dy), hn::Mul(a2, l2.dy)), out[2]);
+}
+
+HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, Lanes& out) {
+  const V x1 = hn::Sub(p.x[1], p.x[0]), y1 = hn::Sub(p.y[1], p.y[0]);
+  const V x2 = hn::Sub(p.x[2], p.x[0]), y2 = hn::Sub(p.y[2], p.y[0]);
+  const V area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
+  const V inverse_area = hn::IfThenZeroElse(hn::Eq(area, hn::Zero(D{})), hn::Div(set(1), area));
+  const V px = hn::Sub(hn::Add(hn::Load(D{}, out.left), set(0.5)), p.x[0]);
+  const V py = hn::Sub(hn::Add(hn::Load(D{}, out.top), set(0.5)), p.y[0]);
+  const auto linear = [&](V dx, V dy) HWY_ATTR {
+    return Linear{hn::Add(hn::Mul(dx, px), hn::Mul(dy, py)), dx, dy};
+  };
+  const Linear l1 = linear(hn::Mul(y2, inverse_area), hn::Mul(hn::Neg(x2), inverse_area));
+  const Linear l2 = linear(hn::Mul(hn::Neg(y1), inverse_area), hn::Mul(x1, inverse_area));
+  store_plane(z[0], hn::Sub(z[1], z[0]), hn::Sub(z[2], z[0]), l1, l2, out.planes[0]);
+  // 1/w relative to its largest keeps the planes in range for any w.
+  const V largest = hn::Max(hn::Max(inverse_w[0], inverse_w[1]), inverse_w[2]), zero = hn::Zero(D{});
+  const V q0 = hn::Div(inverse_w[0], largest), q1 = hn::Div(inverse_w[1], largest),
+          q2 = hn::Div(inverse_w[2], largest);
+  store_plane(zero, q1, zero, l1, l2, out.planes[1]);
+  store_plane(zero, zero, q2, l1, l2, out.planes[2]);
+  store_plane(q0, hn::Sub(q1, q0), hn::Sub(q2, q0), l1, l2, out.planes[3]);
+}
+
+HWY_INLINE void read(const Lanes& in, std::size_t lane, TriangleSetup& out) {
+  out.left = static_cast<int>(in.left[lane]);
+  out.top = static_cast<int>(in.top[lane]);
+  out.right = static_cast<int>(in.right[lane]);
+  out.bottom = static_cast<int>(in.bottom[lane]);
+  out.winding = static_cast<int>(in.winding[lane]);
+  out.covers = out.winding != 0 && out.left < out.right && out.top < out.bottom;
+  if (!out.covers) return;
+  for (std::size_t e = 0; e < 3; ++e) {
+    out.edges[e] = {static_cast<std::int64_t>(in.edge_origin[e][lane]),
+                    static_cast<std::int32_t>(in.edge_dx[e][lane]),
+                    static_cast<std::int32_t>(in.edge_dy[e][lane])};
+  }
+  Plane* planes[] = {&out.depth, &out.weight1, &out.weight2, &out.scale};
+  for (std::size_t k = 0; k < 4; ++k)
+    *planes[k] = {in.planes[k][0][lane], in.planes[k][1][lane], in.planes[k][2][lane]};
+}
+
+void set_up(const Corners& in, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
+            std::span<TriangleSetup> out) {
+  const Grid grid(subpixel_bits);
+  const V round = set(rounding);
+  Lanes lanes;
+  for (std::size_t first = 0; first < out.size(); first += hn::Lanes(D{})) {
+    Points exact, snapped;
+    V z[3], inverse_w[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      exact.x[k] = hn::Load(D{}, in.x[k] + first);
+      exact.y[k] = hn::Load(D{}, in.y[k] + first);
+      snapped.x[k] = grid.snap(hn::Add(exact.x[k], round));
+      snapped.y[k] = grid.snap(hn::Add(exact.y[k], round));
+      z[k] = hn::Load(D{}, in.z[k] + first);
+      inverse_w[k] = hn::Load(D{}, in.inverse_w[k] + first);
+    }
+    set_up_coverage(snapped, grid, viewport, lanes);
+    set_up_planes(exact, z, inverse_w, lanes);
+    for (std::size_t lane = 0; lane < hn::Lanes(D{}) && first + lane < out.size(); ++lane)
+      read(lanes, lane, out[first + lane]);
+  }
+}
+
+}  // namespace splatscope::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace splatscope::raster {
+HWY_EXPORT(set_up);
+
+void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
+            std::span<TriangleSetup> out) {
+  HWY_DYNAMIC_DISPATCH(set_up)(corners, viewport, subpixel_bits, rounding, out);
+}
+}  // namespace splatscope::raster
+#endif

@@ -1,0 +1,274 @@
+// Coverage and depth of windows of 8x8 pixels, compiled once a target and chosen at run time (Highway). A
+// register holds whole quads, in the order of Window's bits.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "model/raster/simd_windows.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "model/output/output.h"
+#include "model/raster/raster.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace splatscope::raster::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// An edge's value at a pixel, of which only the sign matters: kept where seven steps each way cannot
+// overflow.
+HWY_INLINE std::int32_t clamped(std::int64_t value) {
+  constexpr std::int64_t kLimit = 1 << 30;
+  return static_cast<std::int32_t>(std::clamp(value, -kLimit, kLimit));
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
+  std::uint64_t mask = 0;
+  for (unsigned bit = 0; bit < 64; ++bit) {
+    bool inside = true;
+    for (const Edge& edge : setup.edges) {
+      inside &= edge.origin + std::int64_t{edge.dx} * (x + Window::x_of(bit) - setup.left) +
+                    std::int64_t{edge.dy} * (y + Window::y_of(bit) - setup.top) >=
+                0;
+    }
+    mask |= std::uint64_t{inside} << bit;
+  }
+  return mask;
+}
+
+std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarget& target, const Window& window,
+                         std::uint32_t* stored, std::size_t stride) {
+  std::uint64_t passed = 0;
+  for (std::uint64_t left = window.covered; left != 0; left &= left - 1) {
+    const auto bit = static_cast<unsigned>(std::countr_zero(left));
+    const int x = Window::x_of(bit), y = Window::y_of(bit);
+    const float z = setup.depth.at(static_cast<float>(window.x + x - setup.left),
+                                   static_cast<float>(window.y + y - setup.top));
+    const std::uint32_t depth = output::quantize_depth(z, target.format);
+    std::uint32_t& old = stored[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
+    if (target.test && depth > old) continue;
+    if (target.write) old = depth;
+    passed |= std::uint64_t{1} << bit;
+  }
+  return passed;
+}
+
+#else
+
+constexpr std::size_t kRowLanes = 16;  // of a row of four quads
+using I = hn::CappedTag<std::int32_t, kRowLanes>;
+using U = hn::RebindToUnsigned<I>;
+using F = hn::RebindToFloat<I>;
+using VI = hn::Vec<I>;
+using VF = hn::Vec<F>;
+
+// Pixel of each lane of a row of quads.
+alignas(64) constexpr std::int32_t kLaneX[kRowLanes] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
+alignas(64) constexpr std::int32_t kLaneY[kRowLanes] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
+
+// The pixels of a window inside of all edges.
+HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
+  std::int32_t corner[3];
+  for (std::size_t e = 0; e < 3; ++e) {
+    const Edge& edge = setup.edges[e];
+    corner[e] = clamped(edge.origin + std::int64_t{edge.dx} * (x - setup.left) +
+                        std::int64_t{edge.dy} * (y - setup.top));
+  }
+  const int rows = (std::min(setup.bottom - y, kWindow) + 1) / 2;  // of quads
+  std::uint64_t mask = 0;
+  for (std::size_t lane = 0; lane < kRowLanes; lane += hn::Lanes(I{})) {
+    const VI lane_x = hn::Load(I{}, kLaneX + lane), lane_y = hn::Load(I{}, kLaneY + lane);
+    VI value[3], step[3];
+    for (std::size_t e = 0; e < 3; ++e) {
+      const VI dx = hn::Set(I{}, setup.edges[e].dx), dy = hn::Set(I{}, setup.edges[e].dy);
+      value[e] = hn::Add(hn::Set(I{}, corner[e]), hn::Add(hn::Mul(dx, lane_x), hn::Mul(dy, lane_y)));
+      step[e] = hn::Add(dy, dy);
+    }
+    for (int row = 0; row < rows; ++row) {
+      const VI outside = hn::Or(hn::Or(value[0], value[1]), value[2]);
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(I{}, hn::Gt(outside, hn::Set(I{}, -1)), bits);
+      const std::uint64_t inside = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8;
+      mask |= inside << (16 * static_cast<std::size_t>(row) + lane);
+      for (std::size_t e = 0; e < 3; ++e) value[e] = hn::Add(value[e], step[e]);
+    }
+  }
+  return mask;
+}
+
+// Window z as the depth buffer stores it: output::quantize_depth.
+HWY_INLINE hn::Vec<U> quantize(VF z, DepthFormat format) {
+  const VF zero = hn::Zero(F{});
+  const VF clamped = hn::IfThenElseZero(hn::Gt(z, zero), hn::Min(z, hn::Set(F{}, 1.0f)));
+  if (format == DepthFormat::float32) return hn::BitCast(U{}, clamped);
+  const hn::Half<F> half;
+  const hn::Rebind<double, hn::Half<F> > wide;
+  const hn::Half<I> integers;
+  const auto largest = hn::Set(wide, format == DepthFormat::z16 ? 65535.0 : 16777215.0);
+  const auto rounded = [&](hn::Vec<hn::Half<F> > values) HWY_ATTR {
+    const auto scaled = hn::Mul(hn::PromoteTo(wide, values), largest);
+    return hn::DemoteTo(integers, hn::Add(scaled, hn::Set(wide, 0.5)));
+  };
+  const VI both =
+      hn::Combine(I{}, rounded(hn::UpperHalf(half, clamped)), rounded(hn::LowerHalf(half, clamped)));
+  return hn::BitCast(U{}, both);
+}
+
+// Places of pairs of pixels: of two rows that stand one after the other, quad by quad; and back.
+struct Order {
+  alignas(64) std::int32_t quads_of_rows[kRowLanes], rows_of_quads[kRowLanes];
+};
+constexpr Order make_order(std::size_t lanes) {
+  Order order{};
+  const std::size_t pairs = lanes / 2;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const std::size_t pair = lane / 2;
+    order.quads_of_rows[lane] = static_cast<std::int32_t>((pair / 2 + pair % 2 * (pairs / 2)) * 2 + lane % 2);
+    order.rows_of_quads[lane] =
+        static_cast<std::int32_t>((pair % (pairs / 2) * 2 + pair / (pairs / 2)) * 2 + lane % 2);
+  }
+  return order;
+}
+constexpr Order kOrder = make_order(hn::MaxLanes(I{}));
+
+// Tests the covered pixels of a window against `stored`, which holds all of its rows `stride` apart.
+HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarget& target,
+                                    const Window& window, std::uint32_t* stored, std::size_t stride) {
+  const hn::Half<U> half;
+  const auto to_quads = hn::SetTableIndices(U{}, kOrder.quads_of_rows);
+  const auto to_rows = hn::SetTableIndices(U{}, kOrder.rows_of_quads);
+  const VF origin = hn::Set(F{}, setup.depth.origin), dx = hn::Set(F{}, setup.depth.dx),
+           dy = hn::Set(F{}, setup.depth.dy);
+  std::uint64_t passed = 0;
+  for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(I{})) {
+    const std::uint64_t covered = window.covered >> bit & (~std::uint64_t{0} >> (64 - hn::Lanes(I{})));
+    if (covered == 0) continue;
+    const std::size_t lane = bit % kRowLanes;
+    const int row = static_cast<int>(bit / kRowLanes) * 2;
+    const VF x =
+        hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, kLaneX + lane), hn::Set(I{}, window.x - setup.left)));
+    const VF y =
+        hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, kLaneY + lane), hn::Set(I{}, window.y + row - setup.top)));
+    const VF z = hn::Add(origin, hn::Add(hn::Mul(dx, x), hn::Mul(dy, y)));
+    const auto depth = quantize(z, target.format);
+    std::uint32_t* upper = stored + static_cast<std::size_t>(row) * stride + lane / 2;
+    std::uint32_t* lower = upper + stride;
+    const auto old =
+        hn::TableLookupLanes(hn::Combine(U{}, hn::LoadU(half, lower), hn::LoadU(half, upper)), to_quads);
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(covered),
+                                  static_cast<std::uint8_t>(covered >> 8)};
+    auto pass = hn::LoadMaskBits(U{}, bits);
+    if (target.test) pass = hn::AndNot(hn::Gt(depth, old), pass);
+    if (target.write) {
+      const auto rows = hn::TableLookupLanes(hn::IfThenElse(pass, depth, old), to_rows);
+      hn::StoreU(hn::LowerHalf(half, rows), half, upper);
+      hn::StoreU(hn::UpperHalf(half, rows), half, lower);
+    }
+    std::uint8_t out[8] = {};
+    hn::StoreMaskBits(U{}, pass, out);
+    passed |= (out[0] | static_cast<std::uint64_t>(out[1]) << 8) << bit;
+  }
+  return passed;
+}
+
+#endif
+
+// Pixels of a window in the columns (rows) from `first` to `end`, window coordinates.
+constexpr std::uint64_t columns(int first, int end) {
+  std::uint64_t row = 0;
+  for (unsigned bit = 0; bit < 16; ++bit) {
+    const int x = Window::x_of(bit);
+    if (x >= first && x < end) row |= std::uint64_t{1} << bit;
+  }
+  return row * 0x0001000100010001u;
+}
+constexpr std::uint64_t rows(int first, int end) {
+  std::uint64_t mask = 0;
+  for (unsigned bit = 0; bit < 64; ++bit) {
+    const int y = Window::y_of(bit);
+    if (y >= first && y < end) mask |= std::uint64_t{1} << bit;
+  }
+  return mask;
+}
+struct Halves {
+  std::uint64_t columns_from[2], columns_to[kWindow + 1], rows_from[2], rows_to[kWindow + 1];
+};
+constexpr Halves make_halves() {
+  Halves halves{};
+  for (int first = 0; first < 2; ++first) {
+    halves.columns_from[first] = columns(first, kWindow);
+    halves.rows_from[first] = rows(first, kWindow);
+  }
+  for (int end = 0; end <= kWindow; ++end) {
+    halves.columns_to[end] = columns(0, end);
+    halves.rows_to[end] = rows(0, end);
+  }
+  return halves;
+}
+constexpr Halves kHalves = make_halves();
+
+// The pixels of a window within the triangle's rectangle.
+HWY_INLINE std::uint64_t in_rectangle(const TriangleSetup& setup, int x, int y) {
+  return kHalves.columns_from[std::max(setup.left - x, 0)] &
+         kHalves.columns_to[std::min(setup.right - x, kWindow)] &
+         kHalves.rows_from[std::max(setup.top - y, 0)] & kHalves.rows_to[std::min(setup.bottom - y, kWindow)];
+}
+
+// test_depth where the window reaches over the edge of the frame: on a copy.
+std::uint64_t test_depth_at_edge(const TriangleSetup& setup, const DepthTarget& target,
+                                 const Window& window) {
+  std::uint32_t copy[kWindow * kWindow] = {};
+  const std::size_t width = target.viewport.width;
+  const int columns = std::min(static_cast<int>(width) - window.x, kWindow);
+  const int rows = std::min(static_cast<int>(target.viewport.height) - window.y, kWindow);
+  const auto row_of = [&](int row) {
+    return target.values.data() + static_cast<std::size_t>(window.y + row) * width +
+           static_cast<std::size_t>(window.x);
+  };
+  for (int row = 0; row < rows; ++row) std::copy_n(row_of(row), columns, copy + row * kWindow);
+  const std::uint64_t passed = test_depth(setup, target, window, copy, kWindow);
+  for (int row = 0; row < rows; ++row) std::copy_n(copy + row * kWindow, columns, row_of(row));
+  return passed;
+}
+
+BandCounts rasterize_band(const TriangleSetup& setup, const DepthTarget& depth, int y,
+                          std::span<Window, kMaxWindows> out) {
+  const int width = static_cast<int>(depth.viewport.width), height = static_cast<int>(depth.viewport.height);
+  BandCounts counts;
+  for (int x = setup.left & ~1; x < setup.right; x += kWindow) {
+    Window window{x, y, cover(setup, x, y) & in_rectangle(setup, x, y), 0};
+    if (window.covered == 0) continue;
+    if (!depth.test && !depth.write) {
+      window.passed = window.covered;
+    } else if (x + kWindow <= width && y + kWindow <= height) {
+      std::uint32_t* stored = depth.values.data() + static_cast<std::size_t>(y) * depth.viewport.width +
+                              static_cast<std::size_t>(x);
+      window.passed = test_depth(setup, depth, window, stored, depth.viewport.width);
+    } else {
+      window.passed = test_depth_at_edge(setup, depth, window);
+    }
+    out[counts.windows++] = window;
+    counts.covered += static_cast<std::uint32_t>(hwy::PopCount(window.covered));
+    counts.passed += static_cast<std::uint32_t>(hwy::PopCount(window.passed));
+    const std::uint64_t rows_of_quads = window.covered | window.covered >> 1;
+    counts.quads +=
+        static_cast<std::uint32_t>(hwy::PopCount((rows_of_quads | rows_of_quads >> 2) & 0x1111111111111111u));
+  }
+  return counts;
+}
+
+}  // namespace splatscope::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace splatscope::raster {
+HWY_EXPORT(rasterize_band);
+
+BandCounts rasterize_band(const TriangleSetup& setup, const DepthTarget& depth, int y,
+                          std::span<Window, kMaxWindows> out) {
+  return HWY_DYNAMIC_DISPATCH(rasterize_band)(setup, depth, y, out);
+}
+}  // namespace splatscope::raster
+#endif
