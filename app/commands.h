@@ -19,6 +19,7 @@ void add_run_command(CLI::App& app, Invocation& invocation);
 void add_sample_command(CLI::App& app, Invocation& invocation);
 void add_scene_command(CLI::App& app);
 void add_shader_command(CLI::App& app);
+void add_study_command(CLI::App& app, Invocation& invocation);
 void add_trace_command(CLI::App& app);
 
 }  // namespace splatscope::app

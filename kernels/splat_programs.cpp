@@ -65,8 +65,17 @@ dvec4 scaled_y(const Corner& c) {
 dvec4 inverse_variance(const Corner& c) {
   return {1 / (deviation(c) * deviation(c)), 0, 0, 0};
 }
+double height(const Corner& c) {  // s_k/(2 pi sigma^2)
+  return 0.5 * std::numbers::inv_pi * c.surfel.weight / (c.surfel.sigma * c.surfel.sigma);
+}
 dvec4 weighted_color(const Corner& c) {
-  return {c.surfel.color, 0.5 * std::numbers::inv_pi * c.surfel.weight / (c.surfel.sigma * c.surfel.sigma)};
+  return {c.surfel.color, height(c)};
+}
+dvec4 unit_normal(const Corner& c) {
+  return {normal(c), 0};
+}
+dvec4 deviation_and_height(const Corner& c) {
+  return {deviation(c), height(c), 0, 0};
 }
 
 using enum VertexFormat;
@@ -86,12 +95,20 @@ constexpr VertexField kPlaneVertex[] = {{kPositionInput, float3, position},
                                         {kWeightedColorInput, float4, weighted_color},
                                         {kTextureInput, short2, corner}};
 
+constexpr VertexField kNormalVertex[] = {{kPositionInput, float3, position},
+                                         {kNormalInput, float3, unit_normal},
+                                         {kShortCornerInput, short2, corner},
+                                         {kDeviationInput, float2, deviation_and_height},
+                                         {kColorInput, d3dcolor, color}};
+
 constexpr SplatProgram kVisibility[] = {
     {"quad", kVisibilityProgram, "makes its corner from o, s and t", kPaperVertex, splat_constants},
     {"corner", kCornerVisibilityProgram, "finds its corner in the vertex", kCornerVertex, splat_constants}};
 
 constexpr SplatProgram kEwa[] = {
     {"paper", kEwaProgram, "the paper's: eigenvalues of M by Appendix A", kPaperVertex, splat_constants},
+    {"normal", kNormalProgram, "the same factor as plane, from the least bytes", kNormalVertex,
+     plane_constants},
     {"plane", kPlaneProgram, "Cholesky factor on the screen, the surfel's plane by its normal", kPlaneVertex,
      plane_constants},
     {"facing", kFacingProgram, "the same for surfels that face the eye; the others vanish", kPlaneVertex,

@@ -22,11 +22,19 @@ void expect_refused(const Outcome& outcome, const std::string& part) {
 }
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
-  const std::vector<std::vector<std::string>> commands = {
-      {"record"},          {"trace", "info"},      {"scene", "keys"},
-      {"machine", "list"}, {"machine", "show"},    {"shader", "check"},
-      {"shader", "count"}, {"shader", "assemble"}, {"shader", "disassemble"},
-      {"shader", "debug"}, {"shader", "run"},      {"sample"}};
+  const std::vector<std::vector<std::string>> commands = {{"record"},
+                                                          {"trace", "info"},
+                                                          {"scene", "keys"},
+                                                          {"machine", "list"},
+                                                          {"machine", "show"},
+                                                          {"shader", "check"},
+                                                          {"shader", "count"},
+                                                          {"shader", "assemble"},
+                                                          {"shader", "disassemble"},
+                                                          {"shader", "debug"},
+                                                          {"shader", "run"},
+                                                          {"sample"},
+                                                          {"study"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = run_program(command);
@@ -38,6 +46,8 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
 TEST(CommandLine, WrongUseIsExit2) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
                                                     {"no-such-command"},
+                                                    {"study"},
+                                                    {"study", "vertex-data", "--list"},
                                                     {"trace"},
                                                     {"trace", "info"},
                                                     {"scene", "keys", "--none"}}) {
@@ -243,6 +253,8 @@ TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {
   refused({"run", "small.toml", "--set", "vertex.units=0"}, "vertex.units");
   refused({"reproduce", "table7"}, "table7");
   refused({"reproduce", "--out", "taken"}, "taken: ");
+  refused({"study", "vertex-dates"}, "vertex-dates");
+  refused({"study", "vertex-data", "--out", "taken"}, "taken: ");
 }
 
 // A surfel that cannot be drawn is counted; one that is hard to draw is drawn, and nothing is left in the

@@ -46,6 +46,7 @@ TEST(Programs, slots_of_the_paper) {
 
 TEST(Programs, slots_of_the_short_ones) {
   EXPECT_EQ(isa::slot_count(load_program(kCornerVisibilityProgram)), 9);
+  EXPECT_EQ(isa::slot_count(load_program(kNormalProgram)), 37);
   EXPECT_EQ(isa::slot_count(load_program(kPlaneProgram)), 31);
   EXPECT_EQ(isa::slot_count(load_program(kFacingProgram)), 29);
 }

@@ -96,7 +96,7 @@ bool has_principal_axes(const SplatProgram& program) {
 }
 
 bool by_normal(const SplatProgram& program) {
-  return program.name == "plane" || program.name == "facing";
+  return program.name == "normal" || program.name == "plane" || program.name == "facing";
 }
 
 Errors measure(Arithmetic arithmetic, const SplatProgram& program, std::uint32_t seed,

@@ -1,5 +1,6 @@
 #include "kernels/short_ewa/programs.h"
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -19,13 +20,14 @@ Vec4 vec4(const glm::dvec4& v) {
 
 }  // namespace
 
-std::vector<Vec4> plane_constants(const View& view, double, double) {
+std::vector<Vec4> plane_constants(const View& view, double cutoff, double) {
   // A uniform scale of the camera space changes no picture: with unit rows it is that of the object.
   const double scale = glm::length(glm::dvec3(view.object_to_camera[0]));
   const glm::dmat4 rows = glm::transpose(view.object_to_camera) / scale;
   const glm::dvec4 eye = glm::inverse(view.object_to_camera) * glm::dvec4(0, 0, 0, 1);
   const double near = view.near_plane / scale;
   const double depth = view.far_plane / (view.far_plane - view.near_plane);
+  const double radius = std::sqrt(2.0 * cutoff);
   const double eta_squared = view.eta * view.eta;
   return {vec4(view.eta * rows[0]),
           vec4(view.eta * rows[1]),
@@ -33,7 +35,9 @@ std::vector<Vec4> plane_constants(const View& view, double, double) {
           vec4(eta_squared * eye),
           vec4({2.0 / view.width, 2.0 / view.height, -depth * near, 1.0}),
           vec4({0.0, -1.0 / near - 1.0, eta_squared, kDepthFloor * near * near}),
-          vec4({kSmallestPivot, 0.0, 0.0, 0.0})};
+          vec4({kSmallestPivot, 0.0, 0.0, 0.0}),
+          vec4({-1.0, -eta_squared, 0.0, 0.0}),
+          vec4({2.0 * radius, -radius, 1.0, 0.0})};
 }
 
 }  // namespace splatscope::kernels

@@ -1,0 +1,40 @@
+#include "studies/vertex_data.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace splatscope::studies {
+namespace {
+
+// A small plane: the vertices' work and bytes decide, as on the large ones.
+TEST(VertexData, programs_trade_instructions_for_bytes) {
+  const traces::Scene scene = traces::parse_scene(
+      "[surfels]\ngenerator = \"plane\"\ncolumns = 48\nrows = 48\n[frame]\nwidth = 96\nheight = 96\n"
+      "[splatting]\nalgorithm = \"ewa-per-surfel\"\n[capture]\nviews = 2\nframe_size = 96\n",
+      "plane");
+  const std::vector<VertexDataRow> rows = vertex_data_rows(scene);
+  ASSERT_EQ(12u, rows.size());
+  const std::size_t pairs = rows.size() / 2;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const VertexDataRow& row = rows[i];
+    const VertexDataRow& paper = rows[i < pairs ? 0 : pairs];
+    SCOPED_TRACE(std::string(row.programs.visibility) + ", " + std::string(row.programs.ewa) + " on " +
+                 row.machine);
+    EXPECT_EQ(row.machine, paper.machine);
+    // What video memory gains by not being asked for vertices is little.
+    EXPECT_LE(row.agp.fps, 1.01 * row.video.fps);
+    if (&row == &paper) {
+      EXPECT_EQ(13 + 78, row.slots());
+      EXPECT_EQ(4u * (56 + 56), row.surfel_bytes());
+      EXPECT_TRUE(std::isinf(row.psnr));
+      continue;
+    }
+    EXPECT_LT(row.slots(), paper.slots());
+    EXPECT_GT(row.video.fps, paper.video.fps);
+    EXPECT_GT(row.psnr, 40) << "the same Gaussians, rounded otherwise";
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::studies
