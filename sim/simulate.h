@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -48,6 +49,9 @@ struct Result {
   double seconds_of(Cycle some) const {
     return seconds * (static_cast<double>(some) / static_cast<double>(cycles));
   }
+  double share(Cycle some) const { return static_cast<double>(some) / static_cast<double>(cycles); }
+  // The unit that was busy for the largest share of the run: its bottleneck.
+  const UnitBooks& busiest() const { return *std::ranges::max_element(units, {}, &UnitBooks::busy); }
   double frames_per_second() const { return static_cast<double>(frame_cycles.size()) / seconds; }
 };
 

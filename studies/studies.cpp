@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
 
 namespace splatscope::studies {
@@ -11,6 +12,9 @@ std::span<const Study> own_studies() {
       Study{"vertex-data",
             "instructions against bytes a vertex, in video and in AGP memory (Ren 2002, section 8)",
             study_vertex_data},
+      Study{"software",
+            "screen-space EWA in software against the machines, by resolution (Ren 2002, section 8)",
+            study_software},
   };
   return kStudies;
 }

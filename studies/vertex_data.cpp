@@ -37,8 +37,7 @@ std::vector<unsigned char> drawn(const Frame& frame) {
 }
 
 VertexDataRow::Rate rate_of(const sim::Result& timing) {
-  return {timing.frames_per_second(),
-          std::ranges::max_element(timing.units, {}, &sim::UnitBooks::busy)->name};
+  return {timing.frames_per_second(), timing.busiest().name};
 }
 
 struct Plane {

@@ -9,10 +9,6 @@ namespace {
 
 using testing::RandomTrace;
 
-const UnitBooks& busiest(const Result& result) {
-  return *std::ranges::max_element(result.units, {}, &UnitBooks::busy);
-}
-
 struct Bottleneck {
   std::string setting;
   std::string unit;
@@ -27,10 +23,10 @@ TEST_P(Bottlenecks, SetTheEstimateAsTheySetTheSimulation) {
   RandomTrace made = testing::simple_trace(4000);
   const Result estimate = estimate_throughput(made.trace, made.work, machine);
   const Result simulated = simulate(made.trace, made.work, machine);
-  EXPECT_EQ(GetParam().unit, busiest(simulated).name);
-  EXPECT_EQ(GetParam().unit, busiest(estimate).name);
+  EXPECT_EQ(GetParam().unit, simulated.busiest().name);
+  EXPECT_EQ(GetParam().unit, estimate.busiest().name);
   EXPECT_NEAR(1.0, static_cast<double>(estimate.cycles) / static_cast<double>(simulated.cycles), 0.02);
-  EXPECT_NEAR(static_cast<double>(busiest(simulated).busy), static_cast<double>(busiest(estimate).busy),
+  EXPECT_NEAR(static_cast<double>(simulated.busiest().busy), static_cast<double>(estimate.busiest().busy),
               0.02 * static_cast<double>(simulated.cycles));
 }
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "model/isa/program.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
@@ -30,12 +28,6 @@ std::string fitted_parameter(const Machine& machine, std::string_view algorithm)
     if (origin.fitted_to == fmt::format("table1 {}", algorithm)) return parameter;
   }
   return {};
-}
-
-void find_bottleneck(const sim::Result& timing, Table1Row& row) {
-  const auto busiest = std::ranges::max_element(timing.units, {}, &sim::UnitBooks::busy);
-  row.bottleneck = busiest->name;
-  row.bottleneck_share = static_cast<double>(busiest->busy) / static_cast<double>(timing.cycles);
 }
 
 int slots_of(const Trace& trace, std::size_t program) {
@@ -155,7 +147,8 @@ std::vector<Table1Row> table1_rows(const Progress& progress) {
     row.cycles_per_host_second = static_cast<double>(run.timing->cycles) / run.timing_seconds;
     row.psnr = psnr(run.rendered.frame, reference);
     count_slots(trace, row);
-    find_bottleneck(*run.timing, row);
+    row.bottleneck = run.timing->busiest().name;
+    row.bottleneck_share = run.timing->share(run.timing->busiest().busy);
     rows.push_back(row);
     ++done;
   }
