@@ -84,7 +84,7 @@ kernels::ReferencePicture scene_reference(const traces::Scene& scene, const Leav
   kernels::ReferenceSettings settings = filter_of(scene);
   settings.cutoff_tolerance = leave.cutoff_tolerance;
   settings.edge_tolerance = leave.edge_tolerance;
-  settings.texture_length = leave.eight_bit_texels ? kernels::optimal_length(scene.splatting.cutoff) : 0;
+  settings.texture_length = leave.eight_bit_texels ? traces::texture_length(scene.splatting) : 0;
   return kernels::ewa_reference(traces::view_of(scene.camera, scene.frame), reference_surfels(scene),
                                 settings);
 }

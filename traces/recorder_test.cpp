@@ -67,6 +67,53 @@ TEST(Recorder, DrawsInBatchesOfSixteenBitIndices) {
   EXPECT_EQ((20000u - 16384u) * 6, std::get<Draw>(trace.commands[2]).index_count);
 }
 
+// Camera z of what the visibility pass left at a pixel.
+double depth_at(const splatscope::Frame& frame, const Camera& camera, std::size_t x, std::size_t y) {
+  const double depth = frame.depth_value(y * frame.width + x);
+  return camera.near / (1 - depth * (camera.far - camera.near) / camera.far);
+}
+
+// A wall 10 units away, seen with an angle of 90 degrees: where a ray leaves the axis by r, it is sqrt(1 +
+// r^2) times as long.
+TEST(Recorder, DepthMovesAlongTheRayOrTheCamerasAxis) {
+  Scene scene = small_plane(Algorithm::ewa_per_pixel);
+  scene.camera = {{0, 10, 0}, {0, 0, 0}, {0, 0, 1}, 90, 5, 20};
+  scene.frame = {21, 21};
+  scene.splatting.depth_offset = 2;
+  for (const int program : {0, 1}) {
+    scene.splatting.visibility_program = program;
+    scene.splatting.depth_offset_scheme = DepthOffsetScheme::viewing_ray;
+    const Trace along_ray = record(scene, NumberFormats{}).trace;
+    scene.splatting.depth_offset_scheme = DepthOffsetScheme::camera_z;
+    const Trace along_z = record(scene, NumberFormats{}).trace;
+    EXPECT_EQ(along_ray.programs[0].text, along_z.programs[0].text) << "as many slots";
+    EXPECT_EQ(std::get<Draw>(along_ray.commands[2]).constants, std::get<Draw>(along_z.commands[2]).constants)
+        << "the splats stay where they are";
+    const auto frame_of = [](const Trace& trace) { return render(trace, {}).frame; };
+    const kernels::View view = view_of(scene.camera, scene.frame);
+    const splatscope::Frame ray = frame_of(along_ray), z = frame_of(along_z);
+    for (const std::size_t x : {4u, 10u, 16u}) {
+      const glm::dvec2 off = (glm::dvec2(static_cast<double>(x), 10) + 0.5 - view.center()) / view.eta;
+      EXPECT_NEAR(12, depth_at(z, scene.camera, x, 10), 1e-4);
+      // Quads are flat, with corners 2 units from their middles: 2 - 2 / sqrt(1 + 0.2^2) = 0.04 nearer there
+      // on the axis, somewhat more beside it.
+      const double exact = 10 + 2 / std::sqrt(1 + glm::dot(off, off)),
+                   drawn = depth_at(ray, scene.camera, x, 10);
+      EXPECT_LT(drawn, exact);
+      EXPECT_GT(drawn, exact - 0.06);
+    }
+  }
+}
+
+TEST(Recorder, TextureIsAsLongAsTheSceneSays) {
+  Scene scene = small_plane(Algorithm::ewa_per_pixel);
+  EXPECT_EQ(438u, record(scene, NumberFormats{}).trace.textures[0].width) << "Eq. 16 for c = 1";
+  scene.splatting.texture_length = 64;
+  const Trace trace = record(scene, NumberFormats{}).trace;
+  EXPECT_EQ(64u, trace.textures[0].width);
+  EXPECT_EQ(64u * 64, trace.textures[0].texels.size());
+}
+
 // At a surfel of a square grid with h = sqrt 2 spacings the weights within the cutoff sum to (1 + 4 exp(-1/4)
 // + 4 exp(-1/2)) / 2 pi = 1.041; four more of exp(-1) lie on the cutoff itself and may count: 1.275.
 TEST(Recorder, CapturedWeightsAreTheInverseSums) {

@@ -41,13 +41,18 @@ enum class Algorithm { no_ewa, ewa_per_pixel, ewa_per_surfel };
 
 enum class VertexMemory { video, agp };
 
+// How the visibility pass moves the depth image away from the eye (Ren 2002, section 5.1, Fig. 4).
+enum class DepthOffsetScheme { viewing_ray, camera_z };
+
 struct Splatting {
   Algorithm algorithm = Algorithm::ewa_per_surfel;
   double cutoff = 0;        // c: the splat ends at sqrt(2c) standard deviations (Eq. 14)
   double depth_offset = 0;  // z_t of the visibility pass, object units (5.1)
-  double gamma = 0;         // scale of the weights, below 1 so that their sums do not saturate (7.2)
-  double sigma = 0;         // standard deviation of the reconstruction filter, in units of a surfel's radius
+  DepthOffsetScheme depth_offset_scheme = DepthOffsetScheme::viewing_ray;
+  double gamma = 0;  // scale of the weights, below 1 so that their sums do not saturate (7.2)
+  double sigma = 0;  // standard deviation of the reconstruction filter, in units of a surfel's radius
   bool circular_cutoff = false;  // texels beyond the cutoff are 0; else the whole square is used
+  int texture_length = 0;        // texels along an edge of the alpha texture; 0: Eq. 16's
   VertexMemory vertex_memory = VertexMemory::video;
   int visibility_program = 0;  // places in kernels::visibility_programs() and ewa_programs()
   int ewa_program = 0;

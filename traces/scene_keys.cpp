@@ -90,6 +90,11 @@ const std::array kKeys = {
     SceneKey{"splatting", "depth_offset", "object units",
              "z_t of the visibility pass (Ren 2002, 5.1); 0: the average spacing of the surfels",
              RealValue{[](S& s) -> double& { return s.depth_offset; }, 0, 0, kFar}},
+    SceneKey{"splatting", "depth_offset_scheme", "",
+             "direction of z_t: the paper's, or the camera's axis, which hides what it should not (Fig. 4)",
+             ChoiceValue{[](S& s, int i) { s.splatting.depth_offset_scheme = DepthOffsetScheme(i); },
+                         {"viewing-ray", "camera-z"},
+                         0}},
     SceneKey{
         "splatting", "gamma", "",
         "scale of the weights against saturation (Ren 2002, 7.2); 0: 0.73, or less where more splats overlap",
@@ -100,6 +105,9 @@ const std::array kKeys = {
              RealValue{[](S& s) -> double& { return s.splatting.sigma; }, 1, 0.01, 10}},
     SceneKey{"splatting", "circular_cutoff", "", "texels further than `cutoff` from the centre are 0",
              BooleanValue{[](S& s) -> bool& { return s.splatting.circular_cutoff; }, true}},
+    SceneKey{"splatting", "texture_length", "texels",
+             "width and height of the alpha texture; 0: the least that Eq. 16 allows for `cutoff`",
+             IntegerValue{[](S& s) -> int& { return s.splatting.texture_length; }, 0, 0, 4096}},
     SceneKey{
         "splatting", "vertex_memory", "", "where the vertex buffers lie",
         ChoiceValue{[](S& s, int i) { s.splatting.vertex_memory = VertexMemory(i); }, {"video", "agp"}, 0}},

@@ -76,9 +76,11 @@ height = 8
 algorithm = "no-ewa"
 cutoff = 2
 depth_offset = 0.125
+depth_offset_scheme = "camera-z"
 gamma = 0.5
 sigma = 0.75
 circular_cutoff = false
+texture_length = 200
 vertex_memory = "agp"
 [capture]
 views = 5
@@ -101,9 +103,11 @@ box_max = [1, 2, 3]
   EXPECT_EQ(s.splatting.algorithm, Algorithm::no_ewa);
   EXPECT_EQ(s.splatting.cutoff, 2);
   EXPECT_EQ(s.depth_offset, 0.125);
+  EXPECT_EQ(s.splatting.depth_offset_scheme, DepthOffsetScheme::camera_z);
   EXPECT_EQ(s.splatting.gamma, 0.5);
   EXPECT_EQ(s.splatting.sigma, 0.75);
   EXPECT_FALSE(s.splatting.circular_cutoff);
+  EXPECT_EQ(s.splatting.texture_length, 200);
   EXPECT_EQ(s.splatting.vertex_memory, VertexMemory::agp);
   EXPECT_EQ(s.capture.views, 5);
   EXPECT_EQ(s.capture.frame_size, 100);

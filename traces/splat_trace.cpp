@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "kernels/object_space_ewa/alpha_texture.h"
 #include "kernels/object_space_ewa/programs.h"
@@ -52,13 +53,26 @@ Buffer quad_indices(std::size_t quads, MemoryPlace place) {
   return buffer;
 }
 
+// Along camera z the depth image moves as if the eye stood z_t further back; the program's own offset is then
+// 0.
+std::vector<Vec4> constants_of(const kernels::SplatProgram& program, kernels::View view,
+                               const Splatting& settings) {
+  const bool visibility =
+      std::ranges::count(kernels::visibility_programs(), program.file, &kernels::SplatProgram::file) > 0;
+  double along_ray = settings.depth_offset;
+  if (visibility && settings.depth_offset_scheme == DepthOffsetScheme::camera_z) {
+    view.object_to_camera[3].z += std::exchange(along_ray, 0);
+  }
+  return program.constants(view, settings.cutoff, along_ray);
+}
+
 // The draws of a pass: `program`, with its attributes and constants, for all surfels, in as many draws as
 // 16-bit indices make of them.
 void append_draws(Draw draw, const kernels::SplatProgram& program, const kernels::View& view,
                   const Splatting& settings, std::size_t surfels, Trace& trace) {
   draw.vertex_stride = kernels::vertex_bytes(program.fields);
   draw.attributes = kernels::attributes_of(program.fields);
-  draw.constants = program.constants(view, settings.cutoff, settings.depth_offset);
+  draw.constants = constants_of(program, view, settings);
   for (std::size_t first = 0; first < surfels; first += kSurfelsADraw) {
     draw.base_vertex = static_cast<std::uint32_t>(first * kCorners);
     draw.index_count =
@@ -96,6 +110,10 @@ std::array<glm::dvec3, 4> quad_corners(const Surfel& surfel, const Splatting& se
   return corners;
 }
 
+int texture_length(const Splatting& settings) {
+  return settings.texture_length > 0 ? settings.texture_length : kernels::optimal_length(settings.cutoff);
+}
+
 Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, const Splatting& settings,
                   const SplatPass& pass) {
   Trace trace;
@@ -116,8 +134,7 @@ Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, co
     trace.buffers.push_back(vertex_buffer(splats.fields, surfels, pass.weights, settings));
   }
   const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
-  trace.textures.push_back(
-      kernels::alpha_texture(settings.cutoff, kernels::optimal_length(settings.cutoff), shape));
+  trace.textures.push_back(kernels::alpha_texture(settings.cutoff, texture_length(settings), shape));
   trace.programs = {kernels::shader_text(visibility.file), kernels::shader_text(splats.file),
                     kernels::shader_text(pass.sum_weights ? kernels::kWeightedSplatPixelProgram
                                                           : kernels::kSplatPixelProgram)};
@@ -146,7 +163,7 @@ std::vector<Command> seen_from(const kernels::View& view, const Splatting& setti
     if (auto* draw = std::get_if<Draw>(&command)) {
       const kernels::SplatProgram& program =
           kernels::splat_program(trace.programs[draw->vertex_program].name);
-      draw->constants = program.constants(view, settings.cutoff, settings.depth_offset);
+      draw->constants = constants_of(program, view, settings);
     }
   }
   return commands;

@@ -23,6 +23,9 @@ constexpr VertexWeights equal_weights(double weight) {
 // o +- sqrt(2c) sigma (s, t) (Ren 2002, Eq. 14 and 12).
 std::array<glm::dvec3, 4> quad_corners(const Surfel& surfel, const Splatting& settings);
 
+// Texels along an edge of the alpha texture.
+int texture_length(const Splatting& settings);
+
 // How the second pass splats.
 struct SplatPass {
   std::span<const VertexWeights> weights;  // of each surfel
