@@ -16,6 +16,7 @@ struct Options {
   std::string input;
   std::string machine = "geforce4-ti4400";
   std::string fidelity = "cycle";
+  std::uint64_t seed = 1;
   std::vector<std::string> settings;
   std::string out = "out";
   std::optional<std::string> reference;
@@ -36,8 +37,10 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
       c.triangles_outside, c.triangles_behind, c.triangles_back_facing, c.triangles_not_finite);
   if (!run.timing) return;
   const std::size_t frames = run.timing->frame_cycles.size();
-  std::cout << fmt::format("  {}{} cycles, {:.2f} ms, {:.1f} frames a second\n",
+  const double plus_minus = run.timing->cycles_plus_minus;
+  std::cout << fmt::format("  {}{}{} cycles, {:.2f} ms, {:.1f} frames a second\n",
                            frames == 1 ? "" : fmt::format("{} frames, ", frames), run.timing->cycles,
+                           plus_minus > 0 ? fmt::format(" +- {:.0f}", plus_minus) : "",
                            1000 * run.timing->seconds, run.timing->frames_per_second());
   for (const auto& unit : run.timing->units_left_out)
     std::cout << fmt::format("  left out: {}: {}\n", unit.name, unit.why);
@@ -68,8 +71,9 @@ void run(const Options& options, bool quiet) {
       studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
   ProgressBar running("running", quiet);
-  studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback(),
-                                                studies::earlier_frames_writer(input.trace, options.out));
+  studies::FrameRun result =
+      studies::run_frame(input.trace, machine, fidelity, running.callback(),
+                         studies::earlier_frames_writer(input.trace, options.out), options.seed);
   running.clear();
   result.reference = std::move(reference);
   studies::write_run(input, machine, fidelity, result, options.out);
@@ -87,12 +91,14 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
       ->required();
   command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
       ->capture_default_str();
-  command->add_option("--fidelity", options->fidelity, "functional, throughput, cycle or referee")
+  command->add_option("--fidelity", options->fidelity, "functional, throughput, sampled, cycle or referee")
       ->capture_default_str();
   command
       ->add_option("--set", options->settings,
                    "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
       ->allow_extra_args(false);
+  command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
+      ->capture_default_str();
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command
       ->add_option("--reference", options->reference,

@@ -49,19 +49,15 @@ isa::Program load(const Trace& trace, std::uint32_t program) {
   return isa::load(trace.programs[program].text, trace.programs[program].name);
 }
 
-void count_work(DrawJob& job) {
+void check_work(const DrawJob& job) {
   std::uint64_t quads = 0;
   std::uint64_t vertices = 0;
   for (const TriangleWork& triangle : job.work->triangles) {
-    job.triangles_set_up += triangle.pieces != 0;
     quads += triangle.quad_count;
     vertices += triangle.new_vertices;
   }
   std::uint64_t blocks = 0;
-  for (const QuadWork& quad : job.work->quads) {
-    job.colored_quads += is_colored(job, quad);
-    blocks += quad.texel_block_count;
-  }
+  for (const QuadWork& quad : job.work->quads) blocks += quad.texel_block_count;
   const bool fits = quads == job.work->quads.size() && vertices == job.work->shaded_vertices.size() &&
                     blocks == job.work->texel_blocks.size() &&
                     job.work->triangles.size() == job.draw->index_count / 3;
@@ -70,6 +66,12 @@ void count_work(DrawJob& job) {
 }
 
 }  // namespace
+
+void count_items(DrawJob& job) {
+  job.triangles_set_up = job.colored_quads = 0;
+  for (const TriangleWork& triangle : job.work->triangles) job.triangles_set_up += triangle.pieces != 0;
+  for (const QuadWork& quad : job.work->quads) job.colored_quads += is_colored(job, quad);
+}
 
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec) {
   const auto arithmetic = std::count_if(
@@ -149,7 +151,8 @@ PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, 
     job.vertex_address = layout.buffers[draw->vertex_buffer];
     job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
     if (draw->texture) job.texture_address = layout.textures[*draw->texture];
-    count_work(job);
+    check_work(job);
+    count_items(job);
     prepared.jobs.push_back(job);
   }
   if (next_work != work.size()) throw ModelError("more work records than draws");

@@ -47,6 +47,9 @@ std::vector<UnitLeftOut> units_left_out(const Needs& needs);
 // least 1.
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec);
 
+// Counts in a job what its work holds of triangles to set up and of coloured quads.
+void count_items(DrawJob& job);
+
 // The vertex programs that the draws use, and the draws with their work, in order.
 // UserError where a program does not load, ModelError where trace and work do not fit together.
 struct PreparedDraws {

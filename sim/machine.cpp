@@ -1,8 +1,11 @@
 #include "sim/machine.h"
 
+#include <array>
 #include <cmath>
 
+#include "model/error.h"
 #include "sim/draw_jobs.h"
+#include "sim/kernel/systemc_clocks.h"
 #include "sim/units/agp/agp_bus.h"
 #include "sim/units/blend/blend_unit.h"
 #include "sim/units/depth/depth_unit.h"
@@ -246,12 +249,28 @@ SimulatedMachine::SimulatedMachine(const Machine& machine, Scheduler scheduler)
   bus.set_peers({&core});
 }
 
-std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<const DrawWork> work,
-                                                const Machine& spec, Scheduler scheduler) {
+Cycle SimulatedMachine::core_cycle(Cycle bus_cycle) const {
+  const Femtoseconds time = bus.time(bus_cycle);
+  return time == 0 ? 0 : core.first_after(time - 1);
+}
+
+void SimulatedMachine::run() {
+  const std::array<ClockDomain*, 2> domains{&core, &bus};
+  run_on_systemc(domains);
+  if (host->is_finished()) return;
+  std::string dump;
+  for (const auto& unit : units) {
+    if (const std::string state = unit->state(); !state.empty()) dump += "\n  " + unit->name() + ": " + state;
+  }
+  for (const auto& channel : channels) dump += "\n  " + channel->describe();
+  throw ModelError("the simulated machine is deadlocked:" + dump);
+}
+
+std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraws draws,
+                                                const MemoryLayout& layout, const Machine& spec,
+                                                Scheduler scheduler) {
   auto machine = std::make_unique<SimulatedMachine>(spec, scheduler);
-  const MemoryLayout layout = lay_out(trace, spec);
   const Needs needs = needs_of(trace);
-  PreparedDraws draws = prepare_draws(trace, work, spec, layout);
   machine->vertex_programs = std::move(draws.vertex_programs);
   machine->jobs = std::move(draws.jobs);
   machine->left_out = units_left_out(needs);

@@ -37,11 +37,17 @@ struct SimulatedMachine {
   std::vector<UnitLeftOut> left_out;
   Host* host = nullptr;
   PrimitiveAssembly* assembly = nullptr;
+
+  // Runs the trace. ModelError for a deadlock, with what every unit and channel holds.
+  void run();
+  // After the run: the first core edge at or after a bus cycle, and the whole run's cycles.
+  Cycle core_cycle(Cycle bus_cycle) const;
+  Cycle cycles() const { return core_cycle(host->finished_at()); }
 };
 
-// Creates the units that the trace needs and connects them. `work`: one record for each Draw of the trace, in
-// order. UserError where a program does not load, ModelError where trace and work do not fit together.
-std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, std::span<const DrawWork> work,
-                                                const Machine& machine, Scheduler scheduler);
+// Creates the units that the trace needs and connects them. `draws`: of the trace.
+std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraws draws,
+                                                const MemoryLayout& layout, const Machine& machine,
+                                                Scheduler scheduler);
 
 }  // namespace splatscope::sim

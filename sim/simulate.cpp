@@ -1,43 +1,12 @@
 #include "sim/simulate.h"
 
-#include <array>
 #include <bit>
-
-#include "model/error.h"
-#include "sim/kernel/systemc_clocks.h"
 
 namespace splatscope::sim {
 namespace {
 
-// What every unit and channel holds, for the message of a deadlock.
-std::string dump(const SimulatedMachine& machine) {
-  std::string text;
-  for (const auto& unit : machine.units) {
-    if (const std::string state = unit->state(); !state.empty()) text += "\n  " + unit->name() + ": " + state;
-  }
-  for (const auto& channel : machine.channels) text += "\n  " + channel->describe();
-  return text;
-}
-
-// The first core edge at or after a bus cycle.
-Cycle core_cycle(const SimulatedMachine& machine, Cycle bus_cycle) {
-  const Femtoseconds time = machine.bus.time(bus_cycle);
-  return time == 0 ? 0 : machine.core.first_after(time - 1);
-}
-
 void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit, const Books& books) {
-  UnitBooks entry;
-  entry.name = unit.name();
-  entry.busy = books.cycles[Step::kBusy];
-  entry.starved = books.cycles[Step::kStarved];
-  entry.idle = books.cycles[Step::kIdle];
-  for (const auto& by : machine.units) {
-    const Cycle cycles = books.cycles[Step::kBlocked + by->number()];
-    if (cycles == 0) continue;
-    entry.blocked += cycles;
-    entry.blocked_by.emplace_back(by->name(), cycles);
-  }
-  result.units.push_back(std::move(entry));
+  result.units.push_back(named_books(machine, unit, books));
   for (const Statistic& statistic : unit.statistics()) {
     result.statistics.push_back({unit.name(), std::string(statistic.name), std::string(statistic.unit),
                                  std::string(statistic.what), statistic.value});
@@ -54,6 +23,21 @@ void report_progress(const SimulatedMachine& machine, const std::function<void(d
 
 }  // namespace
 
+UnitBooks named_books(const SimulatedMachine& machine, const Unit& unit, const Books& books) {
+  UnitBooks entry;
+  entry.name = unit.name();
+  entry.busy = books.cycles[Step::kBusy];
+  entry.starved = books.cycles[Step::kStarved];
+  entry.idle = books.cycles[Step::kIdle];
+  for (const auto& by : machine.units) {
+    const Cycle cycles = books.cycles[Step::kBlocked + by->number()];
+    if (cycles == 0) continue;
+    entry.blocked += cycles;
+    entry.blocked_by.emplace_back(by->name(), cycles);
+  }
+  return entry;
+}
+
 std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {
   std::vector<Cycle> cycles;
   Cycle start = 0;
@@ -67,23 +51,22 @@ std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {
 
 Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& spec, Scheduler scheduler,
                 const std::function<void(double)>& progress) {
-  const auto machine = build_machine(trace, work, spec, scheduler);
-  const std::array<ClockDomain*, 2> domains{&machine->core, &machine->bus};
+  const MemoryLayout layout = lay_out(trace, spec);
+  const auto machine =
+      build_machine(trace, prepare_draws(trace, work, spec, layout), layout, spec, scheduler);
   if (progress) report_progress(*machine, progress);
-  run_on_systemc(domains);
-  if (!machine->host->is_finished())
-    throw ModelError("the simulated machine is deadlocked:" + dump(*machine));
+  machine->run();
 
   Result result;
-  result.cycles = core_cycle(*machine, machine->host->finished_at());
+  result.cycles = machine->cycles();
   result.seconds = static_cast<double>(machine->core.time(result.cycles)) * 1e-15;
-  for (const ClockDomain* domain : domains) {
+  for (const ClockDomain* domain : {&machine->core, &machine->bus}) {
     for (std::size_t place = 0; place < domain->units().size(); ++place) {
       add_unit(result, *machine, *domain->units()[place], domain->closed_books(place, result.cycles));
     }
   }
   for (const Cycle end : machine->host->command_ends()) {
-    result.command_ends.push_back(core_cycle(*machine, end));
+    result.command_ends.push_back(machine->core_cycle(end));
   }
   result.frame_cycles = cycles_of_frames(trace, result);
   result.units_left_out = machine->left_out;

@@ -39,6 +39,7 @@ struct UnitStatistic {
 struct Result {
   Cycle cycles = 0;  // of the core clock, from the first command to the last frame in memory
   double seconds = 0;
+  double cycles_plus_minus = 0;  // half a 95 % confidence interval; 0: nothing was sampled
   std::uint64_t event_hash = 0;  // of every retirement and every memory decision with its cycle
   std::vector<UnitBooks> units;
   std::vector<UnitStatistic> statistics;
@@ -54,6 +55,9 @@ struct Result {
   const UnitBooks& busiest() const { return *std::ranges::max_element(units, {}, &UnitBooks::busy); }
   double frames_per_second() const { return static_cast<double>(frame_cycles.size()) / seconds; }
 };
+
+// The books of a unit of `machine` with the names of the units in its way.
+UnitBooks named_books(const SimulatedMachine& machine, const Unit& unit, const Books& books);
 
 // Core cycles of each frame, from the end of the one before it to the end of its last command, of a result
 // whose `cycles` and `command_ends` are known.

@@ -6,6 +6,7 @@
 
 #include "model/error.h"
 #include "model/isa/program.h"
+#include "sim/fidelity/sampled.h"
 #include "sim/fidelity/throughput.h"
 #include "studies/reference_comparison.h"
 #include "traces/output_files.h"
@@ -18,6 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {{"functional", Fidelity::functional},
                                                                  {"throughput", Fidelity::throughput},
+                                                                 {"sampled", Fidelity::sampled},
                                                                  {"cycle", Fidelity::cycle},
                                                                  {"referee", Fidelity::referee}};
 
@@ -40,6 +42,9 @@ Json frames_json(const FrameRun& run, std::size_t frames) {
       frame["cycles"] = cycles;
       frame["milliseconds"] = 1000 * seconds;
       frame["frames_per_second"] = 1 / seconds;
+      if (run.timing->cycles_plus_minus > 0) {  // of the whole run
+        frame["cycles_plus_minus"] = run.timing->cycles_plus_minus;
+      }
       frame["event_hash"] = fmt::format("{:016x}", run.timing->event_hash);  // of the whole run
     }
     out.push_back(std::move(frame));
@@ -122,7 +127,8 @@ Fidelity fidelity_by_name(std::string_view name) {
   }
   throw UserError(
       "--fidelity", 0,
-      fmt::format("unknown fidelity \"{}\", expected functional, throughput, cycle or referee", name));
+      fmt::format("unknown fidelity \"{}\", expected functional, throughput, sampled, cycle or referee",
+                  name));
 }
 
 std::string_view name(Fidelity fidelity) {
@@ -152,8 +158,22 @@ Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& n
   return {scene.name, std::move(recording.trace), recording.counts, scene.skipped, scene.mesh};
 }
 
+sim::Result time(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                 Fidelity fidelity, std::uint64_t seed, const Progress& progress) {
+  switch (fidelity) {
+    case Fidelity::throughput:
+      return sim::estimate_throughput(trace, work, machine);
+    case Fidelity::sampled:
+      return sim::estimate_sampled(trace, work, machine, seed);
+    case Fidelity::referee:
+      return sim::simulate(trace, work, machine, sim::Scheduler::referee, progress);
+    default:
+      return sim::simulate(trace, work, machine, sim::Scheduler::skip_ahead, progress);
+  }
+}
+
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
-                   const OnFrame& on_frame) {
+                   const OnFrame& on_frame, std::uint64_t seed) {
   const auto start = std::chrono::steady_clock::now();
   RenderOptions options;
   options.formats = machine.numbers;
@@ -167,12 +187,7 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
                {}};
   if (options.record_work) {
     const auto timing_start = std::chrono::steady_clock::now();
-    const auto scheduler =
-        fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
-    run.timing =
-        fidelity == Fidelity::throughput
-            ? sim::estimate_throughput(trace, run.rendered.work, machine)
-            : sim::simulate(trace, run.rendered.work, machine, scheduler, part(progress, kFunctionShare, 1));
+    run.timing = time(trace, run.rendered.work, machine, fidelity, seed, part(progress, kFunctionShare, 1));
     run.timing_seconds = seconds_since(timing_start);
     run.rendered.work = {};
   }

@@ -18,9 +18,10 @@
 // The frames of a scene or a trace on one machine.
 namespace splatscope::studies {
 
-enum class Fidelity { functional, throughput, cycle, referee };
+enum class Fidelity { functional, throughput, sampled, cycle, referee };
 
-// "functional", "throughput", "cycle", "referee". Throws UserError (file "--fidelity") for another name.
+// "functional", "throughput", "sampled", "cycle", "referee". Throws UserError (file "--fidelity") for another
+// name.
 Fidelity fidelity_by_name(std::string_view name);
 std::string_view name(Fidelity fidelity);
 
@@ -56,9 +57,9 @@ struct FrameRun {
   std::optional<kernels::ScreenSpacePicture> reference;  // what the frame should be, where it is asked for
 };
 
-// The records of work are dropped once they are simulated.
+// The records of work are dropped once they are simulated. `seed`: of the samples.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
-                   const Progress& progress = {}, const OnFrame& on_frame = {});
+                   const Progress& progress = {}, const OnFrame& on_frame = {}, std::uint64_t seed = 1);
 
 // The picture with its alpha set to 1, and the depths.
 Image picture_of(const Frame& frame);

@@ -1,12 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "model/command/commands.h"
 #include "model/work/work.h"
 #include "sim/kernel/unit.h"
 
 namespace splatscope::sim {
+
+// A place in a draw at which some of it was left out: of a sampled draw (`../fidelity/sampled.h`).
+struct Cut {
+  std::uint32_t quad = 0;                 // the first one after it
+  std::span<const QuadWork> quads;        // that were left out
+  std::span<const std::uint32_t> blocks;  // texel blocks of these
+};
 
 // A draw as the units take it: its work, and what is the same for all of it.
 struct DrawJob {
@@ -17,8 +25,10 @@ struct DrawJob {
   std::uint32_t vertex_address = 0;  // of base vertex 0, in the memory it lies in
   std::uint32_t index_address = 0;   // of the first index
   std::uint32_t texture_address = 0;
-  std::uint64_t triangles_set_up = 0;  // not rejected before setup
-  std::uint64_t colored_quads = 0;     // quads that go on to texture, pixel unit and blending
+  std::uint64_t triangles_set_up = 0;    // not rejected before setup
+  std::uint64_t colored_quads = 0;       // quads that go on to texture, pixel unit and blending
+  std::span<const Cut> cuts;             // in order
+  std::span<const std::uint32_t> marks;  // triangles, in order, at which primitive assembly tells the time
 };
 
 // Whether a quad goes on to texture, pixel unit and blending.

@@ -14,7 +14,14 @@ void BlendUnit::connect(Channel<std::uint32_t>& in, MemoryPort& port, std::uint3
 }
 
 std::uint64_t BlendUnit::start(const DrawJob& job) {
+  next_cut_ = 0;
   return job.colored_quads;
+}
+
+void BlendUnit::pass(const Cut& cut) {
+  for (const QuadWork& quad : last_of(cut.quads)) {
+    if (is_colored(job(), quad)) cache_.pass(lines_.line_of(quad), true);
+  }
 }
 
 bool BlendUnit::leave(Cycle now) {
@@ -27,6 +34,7 @@ bool BlendUnit::leave(Cycle now) {
 
 bool BlendUnit::enter(Cycle now) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
+  pass_cuts(in_->front());
   const QuadWork& quad = job().work->quads[in_->front()];
   in_the_way_ = cache_.touch(now, lines_.line_of(quad), job().draw->state.blend, true);
   if (in_the_way_) return false;

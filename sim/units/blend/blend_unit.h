@@ -22,6 +22,7 @@ class BlendUnit final : public FrameUnit {
   std::uint64_t start(const DrawJob& job) override;
   bool leave(Cycle now) override;
   bool enter(Cycle now) override;
+  void pass(const Cut& cut) override;
 
   std::uint64_t quads_ = 0;
 };

@@ -58,6 +58,11 @@ const Unit* CachePipe::touch(Cycle now, std::uint32_t line, bool fetch, bool dir
   return nullptr;
 }
 
+void CachePipe::pass(std::uint32_t line, bool dirty) {
+  if (CacheTags::Way* way = tags_.find(line)) return tags_.use(*way, dirty);
+  tags_.take(tags_.victim(line), line, dirty);
+}
+
 void CachePipe::enter(std::uint32_t item) {
   fifo_[tail_++ & (fifo_.size() - 1)] = {item, entering_reads_};
   entering_reads_ = 0;

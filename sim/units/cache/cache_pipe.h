@@ -48,6 +48,9 @@ class CachePipe {
   Cycle next_ready();
   std::uint32_t leave() { return fifo_[head_++ & (fifo_.size() - 1)].item; }
 
+  // Touches a line in the tags alone, in no time: for what a sampled draw leaves out. Between items only.
+  void pass(std::uint32_t line, bool dirty);
+
   // Writes one dirty line back, if there is one. False: none is left, and all writes have reached memory.
   bool flush(Cycle now);
   Cycle next_flush() const { return next_flush_; }

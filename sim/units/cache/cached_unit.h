@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <span>
+
 #include "sim/kernel/channel.h"
 #include "sim/units/cache/cache_pipe.h"
 #include "sim/units/draw_unit.h"
@@ -19,7 +22,20 @@ class CachedUnit : public DrawUnit {
   // Nothing could be moved in this cycle: why, and until when. `out`: where quads go; nullptr: they end here.
   Step waiting(Cycle now, const Channel<std::uint32_t>* out);
 
+  // Before quad `number` is looked up: what the draw left out before it passes through the tags.
+  void pass_cuts(std::uint32_t number) {
+    for (; next_cut_ < job().cuts.size() && job().cuts[next_cut_].quad <= number; ++next_cut_)
+      pass(job().cuts[next_cut_]);
+  }
+  virtual void pass(const Cut& cut) = 0;
+  // The last of the quads left out, which decide what a cache holds: several times the lines of any.
+  static std::span<const QuadWork> last_of(std::span<const QuadWork> quads) {
+    constexpr std::size_t kRemembered = 8192;
+    return quads.last(std::min(quads.size(), kRemembered));
+  }
+
   int quads_per_clock_;
+  std::size_t next_cut_ = 0;  // of the draw
   Channel<std::uint32_t>* in_ = nullptr;
   CachePipe cache_;
   const Unit* in_the_way_ = nullptr;  // of the quad that would enter

@@ -19,7 +19,18 @@ void DepthUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out,
 }
 
 std::uint64_t DepthUnit::start(const DrawJob& job) {
+  next_cut_ = 0;
   return job.work->quads.size();
+}
+
+void DepthUnit::pass(const Cut& cut) {
+  const DrawState& state = job().draw->state;
+  if (!state.depth_test && !state.depth_write) return;
+  const auto writes = [&](const QuadWork& quad) { return state.depth_write && quad.passed != 0; };
+  for (const QuadWork& quad : cut.quads) {
+    if (writes(quad)) cleared_[lines_.line_of(quad)] = false;
+  }
+  for (const QuadWork& quad : last_of(cut.quads)) cache_.pass(lines_.line_of(quad), writes(quad));
 }
 
 void DepthUnit::clear(bool fast) {
@@ -43,6 +54,7 @@ bool DepthUnit::leave(Cycle now) {
 bool DepthUnit::enter(Cycle now) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   const std::uint32_t number = in_->front();
+  pass_cuts(number);
   const DrawState& state = job().draw->state;
   if (state.depth_test || state.depth_write) {
     const QuadWork& quad = job().work->quads[number];

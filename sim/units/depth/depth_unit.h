@@ -27,6 +27,7 @@ class DepthUnit final : public FrameUnit {
   std::uint64_t start(const DrawJob& job) override;
   bool leave(Cycle now) override;
   bool enter(Cycle now) override;
+  void pass(const Cut& cut) override;
 
   std::vector<bool> cleared_;  // by line: not in memory yet
   std::uint64_t tested_ = 0, passed_ = 0;

@@ -54,6 +54,21 @@ TEST(DepthUnit, QuadsOfAnAbsentLineWaitForItAndThoseThatFailedEndHere) {
   EXPECT_EQ(run.bench.done_at(), 45u);
 }
 
+// What a sampled draw left out before a quad is in the cache, and its lines are no longer marked as cleared.
+TEST(DepthUnit, WhatWasLeftOutPassesThroughTheTags) {
+  testing::TestDraw draw, left_out;
+  draw.add_quad(8, 0);
+  draw.add_quad(0, 0);   // its line is in the cache
+  draw.add_quad(64, 0);  // its line has left the cache again: is read
+  left_out.add_quad(64, 0);
+  for (int i = 0; i < 4; ++i) left_out.add_quad(128, 8 * i);  // the ways of its set
+  left_out.add_quad(0, 0);
+  const Cut cuts[] = {{1, left_out.work.quads, {}}};
+  draw.job.cuts = cuts;
+  const DepthBench run(draw, {4, 4, 8, 4, 8, true}, true);
+  EXPECT_EQ(run.traffic(), (std::vector<std::pair<std::uint32_t, bool>>{{4 * 128 + 64, true}, {32, false}}));
+}
+
 TEST(DepthUnit, LinesThatAFastClearMarkedAreNotRead) {
   testing::TestDraw draw;
   draw.add_quad(0, 0);

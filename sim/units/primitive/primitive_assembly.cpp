@@ -23,6 +23,7 @@ std::uint64_t PrimitiveAssembly::start(const DrawJob& job) {
   triangle_ = 0;
   vertices_ = 0;
   free_from_ = 0;
+  next_mark_ = 0;
   return job.work->triangles.size();
 }
 
@@ -52,6 +53,10 @@ bool PrimitiveAssembly::assemble(Cycle now) {
       now + static_cast<Cycle>(spec_.clocks_per_triangle) + further * static_cast<Cycle>(spec_.clip_clocks);
   vertices_ -= triangle.new_vertices;
   event(now, triangle_);
+  if (next_mark_ < job().marks.size() && job().marks[next_mark_] == triangle_) {
+    ++next_mark_;
+    tell_(now);
+  }
   ++triangle_;
   item_done(now);
   if (report_ && (assembled_ + rejected_) % kReportEvery == 0) report_(assembled_ + rejected_);

@@ -25,6 +25,8 @@ class PrimitiveAssembly final : public DrawUnit {
 
   // Called with the triangles done so far, every few thousand.
   void on_progress(std::function<void(std::uint64_t)> report) { report_ = std::move(report); }
+  // Called as a marked triangle is assembled.
+  void on_mark(std::function<void(Cycle)> tell) { tell_ = std::move(tell); }
 
  private:
   std::uint64_t start(const DrawJob& job) override;
@@ -39,6 +41,8 @@ class PrimitiveAssembly final : public DrawUnit {
   std::uint32_t vertices_ = 0;  // taken and not used by a triangle yet
   Cycle free_from_ = 0;
   std::function<void(std::uint64_t)> report_;
+  std::function<void(Cycle)> tell_;
+  std::size_t next_mark_ = 0;  // of the draw
   std::uint64_t assembled_ = 0, rejected_ = 0, clipped_ = 0;
 };
 

@@ -33,7 +33,15 @@ std::uint64_t TextureUnit::start(const DrawJob& job) {
   }
   next_block_ = 0;
   blocks_done_ = 0;
+  next_cut_ = 0;
   return job.colored_quads;
+}
+
+void TextureUnit::pass(const Cut& cut) {
+  if (!textured_) return;
+  std::size_t blocks = 0;
+  for (const QuadWork& quad : last_of(cut.quads)) blocks += quad.texel_block_count;
+  for (const std::uint32_t block : cut.blocks.last(blocks)) cache_.pass(block >> line_shift_, false);
 }
 
 bool TextureUnit::leave(Cycle now) {
@@ -48,6 +56,7 @@ bool TextureUnit::leave(Cycle now) {
 
 bool TextureUnit::look_up(Cycle now, int& lookups) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
+  if (blocks_done_ == 0) pass_cuts(in_->front());
   const DrawWork& work = *job().work;
   const std::uint32_t blocks = textured_ ? work.quads[in_->front()].texel_block_count : 0;
   for (; blocks_done_ < blocks; ++blocks_done_, --lookups) {

@@ -19,6 +19,7 @@ class TextureUnit final : public CachedUnit {
   std::uint64_t start(const DrawJob& job) override;
   bool leave(Cycle now);
   bool look_up(Cycle now, int& lookups);
+  void pass(const Cut& cut) override;
 
   Machine::Texture spec_;
   std::uint32_t line_shift_;  // blocks a line

@@ -1,0 +1,268 @@
+#include "sim/fidelity/sampled.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include "sim/fidelity/stretches.h"
+#include "sim/fidelity/thinning.h"
+
+namespace splatscope::sim {
+namespace {
+
+constexpr std::size_t kSamples = 48;  // of a population
+constexpr std::size_t kFewest = 4;    // units to a sample, or all are simulated
+constexpr std::size_t kUnit = 2;      // stretches
+constexpr std::size_t kWarming = 2;   // stretches before a sample
+constexpr std::size_t kHead = 2;      // stretches at the start of a draw that are simulated
+constexpr std::size_t kTail = 2;      // at least, at its end
+constexpr double kCutBias = 0.004;
+
+// Units of draws that have their state in common.
+struct Population {
+  std::size_t units = 0;
+  double expected = 0;     // clocks of them all
+  double start = 0;        // of the first sample, in units of the distance between two
+  std::size_t passed = 0;  // units of the draws before
+  std::vector<double> sampled_expected, sampled_cycles;
+
+  bool is_sampled() const { return units >= kFewest * kSamples; }
+  bool is_sample(std::size_t unit) const {
+    const double distance = static_cast<double>(units) / kSamples;
+    const auto before = [&](std::size_t n) {  // samples
+      return std::ceil(static_cast<double>(n) / distance - start);
+    };
+    return before(unit) < before(unit + 1);
+  }
+  // Cycles of all units for one of the sampled.
+  double weight() const {
+    double sum = 0;
+    for (const double clocks : sampled_expected) sum += clocks;
+    return expected / sum;
+  }
+  double estimate() const {
+    double sum = 0;
+    for (const double cycles : sampled_cycles) sum += cycles;
+    return sum * weight();
+  }
+  // Variance of estimate(): of a ratio, from the residuals of the samples. Neighbours are compared: where a
+  // draw changes slowly on its way, systematic samples scatter less than random ones (Wolter 2007, section
+  // 8.2).
+  double variance() const {
+    const double n = static_cast<double>(sampled_cycles.size());
+    const double ratio = estimate() / expected;
+    const auto residual = [&](std::size_t i) { return sampled_cycles[i] - ratio * sampled_expected[i]; };
+    double squares = 0;
+    for (std::size_t i = 1; i < sampled_cycles.size(); ++i)
+      squares += (residual(i) - residual(i - 1)) * (residual(i) - residual(i - 1)) / 2;
+    const double left_out = 1 - n / static_cast<double>(units);
+    return weight() * weight() * left_out * n * squares / (n - 1);
+  }
+};
+
+using State = std::tuple<std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>, bool,
+                         bool, bool, bool>;
+State state_of(const Draw& draw) {
+  const DrawState& s = draw.state;
+  return {draw.vertex_program, draw.pixel_program, draw.texture, s.depth_test,
+          s.depth_write,       s.color_write,      s.blend};
+}
+
+// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
+double student_t(double freedom) {
+  const double z = 1.959964;
+  return z + (z * z * z + z) / (4 * freedom) +
+         (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
+}
+
+// From a mark to the next one, in the run of the thinned draws.
+struct Interval {
+  Role role = Role::exact;
+  Population* population = nullptr;
+  double expected = 0;  // clocks of a sample
+};
+
+class Sampler {
+ public:
+  Sampler(const Trace& trace, std::span<const DrawWork> work, const Machine& machine, std::uint64_t seed)
+      : trace_(trace),
+        layout_(lay_out(trace, machine)),
+        draws_(prepare_draws(trace, work, machine, layout_)) {
+    expect(machine);
+    std::mt19937_64 random(seed);
+    for (auto& [state, population] : populations_)
+      population.start = static_cast<double>(random() >> 11) * 0x1p-53;
+    thin();
+    machine_ = build_machine(trace, draws_, layout_, machine, Scheduler::skip_ahead);
+  }
+
+  Result result() {
+    machine_->assembly->on_mark([this](Cycle now) { note(now); });
+    note(0);
+    machine_->run();
+    note(machine_->cycles());
+    weigh();
+    Result result;
+    result.cycles = static_cast<Cycle>(std::llround(estimated(machine_->cycles())));
+    result.seconds = static_cast<double>(machine_->core.time(result.cycles)) * 1e-15;
+    result.cycles_plus_minus = plus_minus();
+    for (const Cycle end : machine_->host->command_ends())
+      result.command_ends.push_back(static_cast<Cycle>(std::llround(estimated(machine_->core_cycle(end)))));
+    result.frame_cycles = cycles_of_frames(trace_, result);
+    add_books(result);
+    result.units_left_out = machine_->left_out;
+    return result;
+  }
+
+ private:
+  struct Note {
+    Cycle at;
+    std::vector<Books> books;  // by unit
+  };
+
+  // Units of a draw between its start and its end.
+  static std::size_t units_between(const DrawJob& job) {
+    const std::size_t stretches = job.work->triangles.size() / kStretch;
+    return stretches <= kHead + kTail ? 0 : (stretches - kHead - kTail) / kUnit;
+  }
+
+  // What Stretches expect of every unit.
+  void expect(const Machine& machine) {
+    Stretches stretches(trace_, machine, layout_, draws_);
+    std::size_t next = 0;
+    for (const Command& command : trace_.commands) {
+      if (std::holds_alternative<Clear>(command)) stretches.clear();
+      if (!std::holds_alternative<Draw>(command)) continue;
+      const DrawJob& job = draws_.jobs[next++];
+      Population& population = populations_[state_of(*job.draw)];
+      const std::vector<Clocks> clocks = stretches.of(job);
+      std::vector<double>& units = expected_.emplace_back(units_between(job));
+      for (std::size_t i = 0; i < units.size() * kUnit; ++i)
+        units[i / kUnit] += *std::ranges::max_element(clocks[kHead + i]);
+      population.units += units.size();
+      for (const double unit : units) population.expected += unit;
+    }
+  }
+
+  void thin() {
+    intervals_.emplace_back();
+    thin_.reserve(draws_.jobs.size());
+    for (std::size_t i = 0; i < draws_.jobs.size(); ++i) {
+      DrawJob& job = draws_.jobs[i];
+      Population& population = populations_[state_of(*job.draw)];
+      if (!population.is_sampled()) continue;
+      thin_draw(job, population, expected_[i]);
+      population.passed += expected_[i].size();
+    }
+  }
+
+  void thin_draw(DrawJob& job, Population& population, const std::vector<double>& expected) {
+    ThinDraw& thin = thin_.emplace_back(job);
+    std::size_t kept = 0;  // stretches
+    const auto keep = [&](std::size_t from, std::size_t to, Role role, double clocks) {
+      from = std::max(from, kept);
+      if (from >= to) return;
+      kept = to;
+      thin.keep(from * kStretch, std::min(to * kStretch, job.work->triangles.size()), role);
+      intervals_.push_back({role, &population, clocks});
+    };
+    keep(0, kHead, Role::exact, 0);
+    for (std::size_t unit = 0; unit < expected.size(); ++unit) {
+      if (!population.is_sample(population.passed + unit)) continue;
+      const std::size_t first = kHead + unit * kUnit;
+      keep(first - kWarming, first, Role::warming, 0);
+      keep(first, first + kUnit, Role::sample, expected[unit]);
+    }
+    const std::size_t end = kHead + expected.size() * kUnit;
+    keep(end - kWarming, end, Role::warming, 0);
+    keep(end, job.work->triangles.size() / kStretch + 1, Role::exact, 0);
+    job = thin.job();
+  }
+
+  void note(Cycle now) {
+    Note& note = notes_.emplace_back(Note{now, {}});
+    for (const ClockDomain* domain : {&machine_->core, &machine_->bus}) {
+      for (std::size_t place = 0; place < domain->units().size(); ++place)
+        note.books.push_back(domain->closed_books(place, now));
+    }
+  }
+
+  // How much a cycle of each interval counts.
+  void weigh() {
+    for (std::size_t i = 0; i < intervals_.size(); ++i) {
+      if (intervals_[i].role != Role::sample) continue;
+      intervals_[i].population->sampled_cycles.push_back(
+          static_cast<double>(notes_[i + 1].at - notes_[i].at));
+      intervals_[i].population->sampled_expected.push_back(intervals_[i].expected);
+    }
+    for (const Interval& interval : intervals_) {
+      weights_.push_back(interval.role == Role::exact     ? 1
+                         : interval.role == Role::warming ? 0
+                                                          : interval.population->weight());
+    }
+  }
+
+  // The cycle of the whole trace for one of the run.
+  double estimated(Cycle cycle) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < weights_.size() && notes_[i].at < cycle; ++i)
+      sum += weights_[i] * static_cast<double>(std::min(cycle, notes_[i + 1].at) - notes_[i].at);
+    return sum;
+  }
+
+  double plus_minus() const {
+    double variance = 0, estimate = 0;
+    std::size_t fewest = kSamples;
+    for (const auto& [state, population] : populations_) {
+      if (!population.is_sampled()) continue;
+      variance += population.variance();
+      estimate += population.estimate();
+      fewest = std::min(fewest, population.sampled_cycles.size());
+    }
+    return student_t(static_cast<double>(fewest - 1)) * std::sqrt(variance) + kCutBias * estimate;
+  }
+
+  // Rounded so that they still add up.
+  void add_books(Result& result) const {
+    std::size_t number = 0;
+    for (const ClockDomain* domain : {&machine_->core, &machine_->bus}) {
+      for (const Unit* unit : domain->units()) {
+        Books books;
+        double sum = 0;
+        Cycle rounded = 0;
+        for (std::size_t cause = 0; cause < books.cycles.size(); ++cause) {
+          for (std::size_t i = 0; i < weights_.size(); ++i) {
+            sum += weights_[i] * static_cast<double>(notes_[i + 1].books[number].cycles[cause] -
+                                                     notes_[i].books[number].cycles[cause]);
+          }
+          books.cycles[cause] = static_cast<Cycle>(std::llround(sum)) - rounded;
+          rounded += books.cycles[cause];
+        }
+        result.units.push_back(named_books(*machine_, *unit, books));
+        ++number;
+      }
+    }
+  }
+
+  const Trace& trace_;
+  MemoryLayout layout_;
+  PreparedDraws draws_;
+  std::map<State, Population> populations_;
+  std::vector<std::vector<double>> expected_;  // by draw and unit
+  std::vector<ThinDraw> thin_;
+  std::unique_ptr<SimulatedMachine> machine_;
+  std::vector<Interval> intervals_;  // of the run; interval i begins at notes_[i]
+  std::vector<Note> notes_;
+  std::vector<double> weights_;
+};
+
+}  // namespace
+
+Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                        std::uint64_t seed) {
+  return Sampler(trace, work, machine, seed).result();
+}
+
+}  // namespace splatscope::sim

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "model/command/commands.h"
+#include "model/machine/machine.h"
+#include "model/work/work.h"
+#include "sim/simulate.h"
+
+namespace splatscope::sim {
+
+// The cycles of a trace from systematic samples of its draws, simulated as `cycle` does (SMARTS: Wunderlich
+// et al. 2003, with the functional warming of caches; here the vertex pipeline stays full between samples).
+//
+// Draws of one state form a population of units of two stretches (`stretches.h`); every n-th unit is a
+// sample, the first one drawn at random from `seed`. Of each draw its start, its samples and its end run as
+// one draw: what lies between them passes through the tags of the caches alone, and the two stretches before
+// a sample warm what else has a memory: queues, rows of DRAM, vertices in flight. What was left out then
+// takes what the samples say, by the ratio of their cycles to what `Stretches` expect of them. A population
+// of fewer than `kFewest` units for each sample is simulated whole, as are clears and what the host does.
+//
+// Of the result, `cycles_plus_minus` is half the 95 % confidence interval: from the scatter of the samples,
+// and kCutBias of what was estimated, for what they have in common. `event_hash` is 0 and `statistics` is
+// empty. The books are estimated by the same samples. Throws like simulate().
+Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                        std::uint64_t seed = 1);
+
+}  // namespace splatscope::sim

@@ -1,0 +1,158 @@
+#include "sim/fidelity/sampled.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "sim/fidelity/thinning.h"
+#include "sim/testing/random_trace.h"
+
+namespace splatscope::sim {
+namespace {
+
+using testing::RandomTrace;
+
+// One draw of splats whose size, texels and place drift along it and scatter: two triangles of a quad each.
+RandomTrace splats(std::uint32_t triangles, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto number = [&](std::uint32_t least, std::uint32_t most) {
+    return std::uniform_int_distribution<std::uint32_t>(least, most)(random);
+  };
+  RandomTrace made = testing::simple_trace(0);
+  made.trace.width = made.trace.height = 256;
+  Draw& draw = std::get<Draw>(made.trace.commands[1]);
+  DrawWork& work = made.work[0];
+  draw.index_count = 3 * triangles;
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    TriangleWork triangle;
+    triangle.new_vertices = i % 2 == 0 ? 3 : 1;
+    for (std::uint32_t k = 0; k < triangle.new_vertices; ++k)
+      work.shaded_vertices.push_back(i / 2 * 4 + (i % 2 == 0 ? k : 3));
+    const std::uint32_t drift = 8 * i / triangles;  // from small splats to large ones
+    triangle.quad_count = number(drift + 2, drift + 6);
+    triangle.tile_count = 1 + triangle.quad_count / 8;
+    const std::uint32_t x = number(0, 127), y = 120 * i / triangles;
+    for (std::uint32_t k = 0; k < triangle.quad_count; ++k) {
+      QuadWork quad;
+      quad.x = static_cast<std::uint16_t>((x + k % 4) % 128);
+      quad.y = static_cast<std::uint16_t>(y + k / 4);
+      quad.covered = 15;
+      quad.passed = number(0, 3) == 0 ? 0 : 15;
+      quad.texel_block_count = quad.passed ? 1 : 0;
+      if (quad.passed) work.texel_blocks.push_back(number(0, 255));
+      work.quads.push_back(quad);
+    }
+    work.triangles.push_back(triangle);
+  }
+  return made;
+}
+
+constexpr std::uint32_t kTriangles = 40000;
+
+class Machines : public ::testing::TestWithParam<std::vector<std::string>> {};
+
+// Each in its own bottleneck: vertices, memory, memory without reordering, setup, texture lookups.
+TEST_P(Machines, TheIntervalCoversTheTruthAndIsNarrow) {
+  Machine machine = machine::load("geforce4-ti4400");
+  for (const std::string& setting : GetParam()) machine::set(machine, setting);
+  const RandomTrace made = splats(kTriangles, 7);
+  const Result truth = simulate(made.trace, made.work, machine);
+  const auto cycles = static_cast<double>(truth.cycles);
+  int covered = 0;
+  double bias = 0;
+  constexpr int kSeeds = 10;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Result sampled = estimate_sampled(made.trace, made.work, machine, seed);
+    const double error = static_cast<double>(sampled.cycles) - cycles;
+    bias += error / cycles / kSeeds;
+    covered += std::abs(error) <= sampled.cycles_plus_minus;
+    EXPECT_GT(sampled.cycles_plus_minus, 0);
+    EXPECT_LE(sampled.cycles_plus_minus, 0.065 * cycles);  // 48 samples of what scatters by a fifth
+    ASSERT_EQ(sampled.units.size(), truth.units.size());
+    for (std::size_t i = 0; i < truth.units.size(); ++i) {
+      const UnitBooks& a = sampled.units[i];
+      EXPECT_EQ(a.name, truth.units[i].name);
+      EXPECT_EQ(a.busy + a.starved + a.blocked + a.idle, sampled.cycles) << a.name;
+      EXPECT_NEAR(static_cast<double>(a.busy), static_cast<double>(truth.units[i].busy), 0.05 * cycles)
+          << a.name;
+    }
+  }
+  EXPECT_GE(covered, 9);            // 19 of 20 are promised
+  EXPECT_LE(std::abs(bias), 0.01);  // the mean of 10: what the samples have in common
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bottlenecks, Machines,
+    ::testing::Values(std::vector<std::string>{}, std::vector<std::string>{"memory.channels=1"},
+                      std::vector<std::string>{"memory.channels=1", "memory.bypass_limit=0"},
+                      std::vector<std::string>{"setup.clocks_per_triangle=40"},
+                      std::vector<std::string>{"vertex.units=8", "texture.lookups_per_clock=1",
+                                               "texture.cache_lines=16"}));
+
+TEST(Sampled, TheSeedAloneDecidesWhichSamplesAreTaken) {
+  const RandomTrace made = splats(kTriangles, 7);
+  const Machine machine = machine::load("radeon-8500");
+  const Result one = estimate_sampled(made.trace, made.work, machine, 1);
+  EXPECT_EQ(one.cycles, estimate_sampled(made.trace, made.work, machine, 1).cycles);
+  EXPECT_NE(one.cycles, estimate_sampled(made.trace, made.work, machine, 2).cycles);
+  ASSERT_EQ(one.command_ends.size(), 2u);
+  EXPECT_LT(one.command_ends[0], one.command_ends[1]);
+  EXPECT_EQ(one.command_ends[1], one.cycles);
+}
+
+// Nothing to sample: exactly what the simulation says, clears and the host too.
+TEST(Sampled, SmallTracesAreSimulatedWhole) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    testing::RandomMaker maker(seed);
+    const RandomTrace made = maker.trace();
+    const Machine machine = maker.machine();
+    const Result sampled = estimate_sampled(made.trace, made.work, machine);
+    const Result simulated = simulate(made.trace, made.work, machine);
+    EXPECT_EQ(sampled.cycles, simulated.cycles);
+    EXPECT_EQ(sampled.cycles_plus_minus, 0);
+    EXPECT_EQ(sampled.command_ends, simulated.command_ends);
+    ASSERT_EQ(sampled.units.size(), simulated.units.size());
+    for (std::size_t i = 0; i < simulated.units.size(); ++i) {
+      EXPECT_EQ(sampled.units[i].busy, simulated.units[i].busy);
+      EXPECT_EQ(sampled.units[i].blocked_by, simulated.units[i].blocked_by);
+    }
+    EXPECT_EQ(sampled.units_left_out.size(), simulated.units_left_out.size());
+  }
+}
+
+TEST(ThinDraw, KeepsPartsOfADrawAndKnowsWhatLiesBetween) {
+  const RandomTrace made = splats(1000, 3);
+  DrawJob whole;
+  whole.draw = &std::get<Draw>(made.trace.commands[1]);
+  whole.work = &made.work[0];
+  ThinDraw thin(whole);
+  thin.keep(0, 64, Role::exact);
+  thin.keep(64, 128, Role::warming);
+  thin.keep(512, 1000, Role::sample);
+  const DrawJob job = thin.job();
+  const DrawWork& all = made.work[0];
+  const DrawWork& kept = *job.work;
+  EXPECT_EQ(kept.triangles.size(), 128u + 488u);
+  ASSERT_EQ(job.marks.size(), 3u);
+  EXPECT_EQ(job.marks[1], 64u);
+  EXPECT_EQ(job.marks[2], 128u);
+  ASSERT_EQ(job.cuts.size(), 1u);
+  const Cut& cut = job.cuts[0];
+  EXPECT_EQ(kept.quads.size() + cut.quads.size(), all.quads.size());
+  EXPECT_EQ(kept.texel_blocks.size() + cut.blocks.size(), all.texel_blocks.size());
+  EXPECT_EQ(cut.quads.data(), &all.quads[cut.quad]);
+  EXPECT_EQ(kept.shaded_vertices.back(), all.shaded_vertices.back());
+  std::size_t quads = 0, vertices = 0;
+  for (const TriangleWork& triangle : kept.triangles) {
+    quads += triangle.quad_count;
+    vertices += triangle.new_vertices;
+  }
+  EXPECT_EQ(quads, kept.quads.size());
+  EXPECT_EQ(vertices, kept.shaded_vertices.size());
+}
+
+}  // namespace
+}  // namespace splatscope::sim

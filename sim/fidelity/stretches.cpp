@@ -1,0 +1,79 @@
+#include "sim/fidelity/stretches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/units/vertex/throughput.h"
+
+namespace splatscope::sim {
+
+double whole_clocks(double items, int a_clock) {
+  return std::ceil(items / a_clock);
+}
+
+double memory_clocks(double bytes, const Machine& machine) {
+  return bytes / (static_cast<double>(machine.memory.channels) * machine.memory.channel_bytes_per_clock);
+}
+
+Stretches::Stretches(const Trace& trace, const Machine& machine, const MemoryLayout& layout,
+                     const PreparedDraws& draws)
+    : trace_(trace), machine_(machine), traffic_(machine, layout) {
+  for (const auto& slots : draws.vertex_programs)
+    clocks_per_vertex_.push_back(throughput(slots, machine.vertex).clocks_per_vertex);
+}
+
+double Stretches::agp_clocks(double bytes) const {
+  return bytes / machine_.agp.bytes_per_clock * machine_.clock.core_megahertz / machine_.clock.bus_megahertz;
+}
+
+std::vector<Clocks> Stretches::of(const DrawJob& job) {
+  const Traffic traffic = traffic_.of(job);
+  std::vector<Clocks> stretches;
+  Position at;
+  while (at.triangle < job.work->triangles.size()) stretches.push_back(next(job, traffic, at));
+  return stretches;
+}
+
+Clocks Stretches::next(const DrawJob& job, const Traffic& traffic, Position& at) const {
+  const DrawWork& work = *job.work;
+  const std::size_t end = std::min(at.triangle + kStretch, work.triangles.size());
+  const auto triangles = static_cast<double>(end - at.triangle);
+  const int width = machine_.pixel.quads_per_clock;
+  double vertices = 0, pieces = 0, quads = 0, colored = 0, blocks = 0;
+  Clocks clocks{};
+  for (; at.triangle < end; ++at.triangle) {
+    const TriangleWork& triangle = work.triangles[at.triangle];
+    vertices += triangle.new_vertices;
+    clocks[kPrimitive] += machine_.primitive.clocks_per_triangle;
+    if (triangle.pieces == 0) continue;
+    pieces += triangle.pieces;
+    clocks[kPrimitive] += (triangle.pieces - 1) * machine_.primitive.clip_clocks;
+    clocks[kRaster] += std::max({1.0, whole_clocks(triangle.tile_count, machine_.raster.tiles_per_clock),
+                                 whole_clocks(triangle.quad_count, width)});
+    quads += triangle.quad_count;
+    for (const std::size_t last = at.quad + triangle.quad_count; at.quad < last; ++at.quad) {
+      const QuadWork& quad = work.quads[at.quad];
+      colored += is_colored(job, quad);
+      blocks += quad.texel_block_count;
+    }
+  }
+  const double indices = 3 * triangles;
+  const double fetched = vertices * job.draw->vertex_stride;
+  clocks[kFetch] = std::max(indices / machine_.fetch.indices_per_clock, vertices);
+  clocks[kVertex] = vertices * clocks_per_vertex_[job.vertex_program] / machine_.vertex.units;
+  clocks[kPrimitive] = std::max(clocks[kPrimitive], vertices);
+  clocks[kSetup] = pieces * machine_.setup.clocks_per_triangle;
+  clocks[kDepth] = quads / width;
+  clocks[kTexture] = std::max(blocks / machine_.texture.lookups_per_clock, colored / width);
+  clocks[kPixel] = colored * static_cast<double>(job.pixel_clocks) / width;
+  clocks[kBlend] = colored / width;
+  double bytes = quads * traffic.depth + colored * (traffic.color + traffic.texture);
+  const auto in_agp = [&](std::uint32_t buffer) { return trace_.buffers[buffer].place == MemoryPlace::agp; };
+  (in_agp(job.draw->vertex_buffer) ? clocks[kAgp] : bytes) += fetched;
+  (in_agp(job.draw->index_buffer) ? clocks[kAgp] : bytes) += 2 * indices;
+  clocks[kAgp] = agp_clocks(clocks[kAgp]);
+  clocks[kMemory] = memory_clocks(bytes, machine_);
+  return clocks;
+}
+
+}  // namespace splatscope::sim

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "model/machine/machine.h"
+#include "sim/draw_jobs.h"
+#include "sim/fidelity/traffic.h"
+
+namespace splatscope::sim {
+
+enum Stage : std::uint8_t {
+  kFetch,
+  kVertex,
+  kPrimitive,
+  kSetup,
+  kRaster,
+  kDepth,
+  kTexture,
+  kPixel,
+  kBlend,
+  kMemory,
+  kAgp,
+  kCommand,
+  kHost,
+  kStages
+};
+using Clocks = std::array<double, kStages>;  // of the core, by stage
+
+// Triangles that the queues between the units hold together, about: units that far apart can be busy with
+// work of different kinds, so shorter stretches would see bottlenecks that the queues smooth away.
+inline constexpr std::size_t kStretch = 64;
+
+double whole_clocks(double items, int a_clock);
+double memory_clocks(double bytes, const Machine& machine);  // of all channels together
+
+// What each stage would take for a stretch of triangles if it never waited.
+class Stretches {
+ public:
+  // All outlive it.
+  Stretches(const Trace& trace, const Machine& machine, const MemoryLayout& layout,
+            const PreparedDraws& draws);
+
+  // Draws and clears in the order of the trace. Of a draw, its stretches of kStretch triangles in order; the
+  // last may be shorter.
+  std::vector<Clocks> of(const DrawJob& job);
+  void clear() { traffic_.clear(); }
+
+ private:
+  struct Position {
+    std::size_t triangle = 0;
+    std::size_t quad = 0;
+  };
+  Clocks next(const DrawJob& job, const Traffic& traffic, Position& at) const;
+  double agp_clocks(double bytes) const;
+
+  const Trace& trace_;
+  const Machine& machine_;
+  TrafficCounter traffic_;
+  std::vector<double> clocks_per_vertex_;  // by program
+};
+
+}  // namespace splatscope::sim
