@@ -9,6 +9,10 @@ namespace splatscope::studies {
 std::span<const Study> reproductions() {
   static constexpr std::array kReproductions = {
       Study{"table1", "frame rates of the three algorithms on both machines", reproduce_table1},
+      Study{"fig4", "the depth offset along camera z and along viewing rays, two surfaces",
+            reproduce_figure4},
+      Study{"fig5", "the two depth offsets on a model, and z_t from too small to too large",
+            reproduce_figure5},
       Study{"fig8", "the object-space EWA resampling filter of a surfel", reproduce_figure8},
       Study{"fig11", "a checkerboard by the three algorithms", reproduce_figure11},
   };

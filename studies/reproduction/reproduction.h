@@ -9,6 +9,8 @@ namespace splatscope::studies {
 std::span<const Study> reproductions();
 
 // One file each beside this one.
+void reproduce_figure4(Findings& findings, const Progress& progress);
+void reproduce_figure5(Findings& findings, const Progress& progress);
 void reproduce_figure8(Findings& findings, const Progress& progress);
 void reproduce_figure11(Findings& findings, const Progress& progress);
 
