@@ -5,8 +5,10 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "model/error.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
+#include "studies/run_observers.h"
 #include "traces/output_files.h"
 
 namespace splatscope::app {
@@ -20,6 +22,7 @@ struct Options {
   std::vector<std::string> settings;
   std::string out = "out";
   std::optional<std::string> reference;
+  studies::ObserveOptions observe;
 };
 
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
@@ -58,6 +61,12 @@ void run(const Options& options, bool quiet) {
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
+  if (!(options.observe.timeline + options.observe.counters).empty() &&
+      fidelity != studies::Fidelity::cycle && fidelity != studies::Fidelity::referee) {
+    throw UserError(
+        "--fidelity", 0,
+        fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
+  }
   std::optional<kernels::ScreenMap> map;
   if (options.reference) map = studies::screen_map_by_name(*options.reference);
   ProgressBar loading("loading", quiet);
@@ -70,16 +79,19 @@ void run(const Options& options, bool quiet) {
   const studies::Input input =
       studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
+  studies::RunObservers observers(options.observe, input.trace);
   ProgressBar running("running", quiet);
-  studies::FrameRun result =
-      studies::run_frame(input.trace, machine, fidelity, running.callback(),
-                         studies::earlier_frames_writer(input.trace, options.out), options.seed);
+  studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback(),
+                                                studies::earlier_frames_writer(input.trace, options.out),
+                                                {.seed = options.seed, .observers = observers.observers()});
   running.clear();
   result.reference = std::move(reference);
+  const std::vector<std::string> observed = observers.commit();
   studies::write_run(input, machine, fidelity, result, options.out);
   print(input, machine, result);
   if (result.reference) print(studies::compare(result.rendered.frame, *result.reference));
   std::cout << fmt::format("  frame.png, frame.exr, depth.exr and results.json in {}\n", options.out);
+  for (const std::string& line : observed) std::cout << "  " << line << '\n';
 }
 
 }  // namespace
@@ -106,6 +118,14 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
                    "screen-space filter, Ren 2002, Eq. 5) or perspective (the exact map)")
       ->expected(0, 1)
       ->default_str("affine");
+  command->add_option("--timeline", options->observe.timeline,
+                      "a file for Perfetto: what each unit did when, queues, memory");
+  command->add_option("--timeline-window", options->observe.window, "FIRST:LAST: core cycles that it shows");
+  command->add_option("--counters", options->observe.counters,
+                      "a table (CSV) of shares, statistics and queues over time");
+  command->add_option("--counters-every", options->observe.counters_every, "core cycles a row of it")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->footer(
       "Example: splatscope run checkerboard-ewa-per-surfel --set vertex.units=4 --out out/four-units");
   command->callback([options, &invocation] { run(*options, invocation.quiet); });

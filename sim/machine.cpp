@@ -147,6 +147,7 @@ Units create_units(Builder& build, SimulatedMachine& machine, const Trace& trace
   const Host::Frame frame{std::uint64_t{trace.width} * trace.height,
                           static_cast<int>(layout.color.bytes_per_pixel)};
   u.host = &build.unit<Host>(bus, "host", spec.host, bus_period, trace, frame);
+  machine.memory.assign(u.memory.begin(), u.memory.end());
   machine.host = u.host;
   machine.assembly = u.assembly;
   return u;

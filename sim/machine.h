@@ -35,6 +35,7 @@ struct SimulatedMachine {
   std::vector<std::unique_ptr<ChannelState>> channels;
   std::vector<std::unique_ptr<MemoryPort>> ports;
   std::vector<UnitLeftOut> left_out;
+  std::vector<const Unit*> memory;  // of the units: the memory channels
   Host* host = nullptr;
   PrimitiveAssembly* assembly = nullptr;
 

@@ -50,17 +50,23 @@ std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {
 }
 
 Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& spec, Scheduler scheduler,
-                const std::function<void(double)>& progress) {
+                const std::function<void(double)>& progress, std::span<Observer* const> observers) {
   const MemoryLayout layout = lay_out(trace, spec);
   const auto machine =
       build_machine(trace, prepare_draws(trace, work, spec, layout), layout, spec, scheduler);
+  const std::array<ClockDomain*, 2> domains{&machine->core, &machine->bus};
   if (progress) report_progress(*machine, progress);
+  for (Observer* observer : observers) {
+    observer->begin(*machine);
+    for (ClockDomain* domain : domains) domain->observe(*observer, domain == &machine->core);
+  }
   machine->run();
 
   Result result;
   result.cycles = machine->cycles();
   result.seconds = static_cast<double>(machine->core.time(result.cycles)) * 1e-15;
-  for (const ClockDomain* domain : {&machine->core, &machine->bus}) {
+  for (ClockDomain* domain : domains) {
+    domain->finish_observing(result.cycles);
     for (std::size_t place = 0; place < domain->units().size(); ++place) {
       add_unit(result, *machine, *domain->units()[place], domain->closed_books(place, result.cycles));
     }
@@ -70,6 +76,7 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
   }
   result.frame_cycles = cycles_of_frames(trace, result);
   result.units_left_out = machine->left_out;
+  for (Observer* observer : observers) observer->end(result);
   if (progress) progress(1);
   return result;
 }

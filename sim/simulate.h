@@ -12,6 +12,7 @@
 #include "model/machine/machine.h"
 #include "model/work/work.h"
 #include "sim/kernel/clock_domain.h"
+#include "sim/kernel/observer.h"
 #include "sim/machine.h"
 
 // When it happens: the cycle-level timing of a trace on a machine.
@@ -65,11 +66,11 @@ std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result);
 
 // Simulates `trace`, whose draws gave the stages `work` to do (one record for each Draw, in order), on
 // `machine`. `progress` is told the fraction done, from 0 to 1. May be called many times in a process, and
-// from several threads (which then take turns on the SystemC kernel). Throws UserError where a program of the
-// trace does not load, ModelError for a bug of the simulation: work that does not fit the trace, or a
-// deadlock, with what every unit and channel holds.
+// from several threads (which then take turns on the SystemC kernel). `observers` change nothing. Throws
+// UserError where a program of the trace does not load, ModelError for a bug of the simulation: work that
+// does not fit the trace, or a deadlock, with what every unit and channel holds.
 Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
-                Scheduler scheduler = Scheduler::skip_ahead,
-                const std::function<void(double)>& progress = {});
+                Scheduler scheduler = Scheduler::skip_ahead, const std::function<void(double)>& progress = {},
+                std::span<Observer* const> observers = {});
 
 }  // namespace splatscope::sim

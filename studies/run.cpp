@@ -159,21 +159,21 @@ Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& n
 }
 
 sim::Result time(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
-                 Fidelity fidelity, std::uint64_t seed, const Progress& progress) {
+                 Fidelity fidelity, const TimingOptions& options, const Progress& progress) {
   switch (fidelity) {
     case Fidelity::throughput:
       return sim::estimate_throughput(trace, work, machine);
     case Fidelity::sampled:
-      return sim::estimate_sampled(trace, work, machine, seed);
+      return sim::estimate_sampled(trace, work, machine, options.seed);
     case Fidelity::referee:
-      return sim::simulate(trace, work, machine, sim::Scheduler::referee, progress);
+      return sim::simulate(trace, work, machine, sim::Scheduler::referee, progress, options.observers);
     default:
-      return sim::simulate(trace, work, machine, sim::Scheduler::skip_ahead, progress);
+      return sim::simulate(trace, work, machine, sim::Scheduler::skip_ahead, progress, options.observers);
   }
 }
 
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
-                   const OnFrame& on_frame, std::uint64_t seed) {
+                   const OnFrame& on_frame, const TimingOptions& timing) {
   const auto start = std::chrono::steady_clock::now();
   RenderOptions options;
   options.formats = machine.numbers;
@@ -187,7 +187,7 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
                {}};
   if (options.record_work) {
     const auto timing_start = std::chrono::steady_clock::now();
-    run.timing = time(trace, run.rendered.work, machine, fidelity, seed, part(progress, kFunctionShare, 1));
+    run.timing = time(trace, run.rendered.work, machine, fidelity, timing, part(progress, kFunctionShare, 1));
     run.timing_seconds = seconds_since(timing_start);
     run.rendered.work = {};
   }

@@ -57,9 +57,15 @@ struct FrameRun {
   std::optional<kernels::ScreenSpacePicture> reference;  // what the frame should be, where it is asked for
 };
 
-// The records of work are dropped once they are simulated. `seed`: of the samples.
+struct TimingOptions {
+  std::uint64_t seed = 1;                          // of the samples
+  std::span<sim::Observer* const> observers = {};  // watch a run that is simulated (cycle, referee)
+};
+
+// The records of work are dropped once they are simulated.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
-                   const Progress& progress = {}, const OnFrame& on_frame = {}, std::uint64_t seed = 1);
+                   const Progress& progress = {}, const OnFrame& on_frame = {},
+                   const TimingOptions& timing = {});
 
 // The picture with its alpha set to 1, and the depths.
 Image picture_of(const Frame& frame);

@@ -194,6 +194,19 @@ TEST(CommandLine, RunWritesItsResults) {
   }
 }
 
+TEST(CommandLine, RunWritesATimelineAndCounters) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  std::vector<std::string> run = {"run",        "small.toml", "--out",      "a",
+                                  "--timeline", "t.json",     "--counters", "c.csv"};
+  EXPECT_EQ(run_program(run, folder.path()).status, 0);
+  EXPECT_GT(nlohmann::json::parse(text_of(folder.path() / "t.json")).at("traceEvents").size(), 100u);
+  EXPECT_EQ(text_of(folder.path() / "c.csv").substr(0, 6), "cycle,");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a", "c.csv", "small.toml", "t.json"}));
+  run.insert(run.end(), {"--fidelity", "functional"});
+  expect_refused(run_program(run, folder.path()), "--fidelity");
+}
+
 TEST(CommandLine, TraceOfASceneRunsAsTheScene) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);

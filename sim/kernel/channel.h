@@ -8,10 +8,12 @@
 
 namespace splatscope::sim {
 
-// What a deadlock's dump prints of a channel.
+// What can be seen of a channel from outside: for the dump of a deadlock, and for observers.
 class ChannelState {
  public:
   virtual ~ChannelState() = default;
+  virtual const std::string& name() const = 0;
+  virtual std::uint64_t items() const = 0;  // pushed and not popped yet
   virtual std::string describe() const = 0;
 };
 
@@ -65,9 +67,11 @@ class Channel final : public ChannelState {
     return slot.value;
   }
 
+  const std::string& name() const override { return name_; }
+  std::uint64_t items() const override { return tail_ - head_; }
   std::string describe() const override {
-    return name_ + " (" + producer_.name() + " to " + consumer_.name() +
-           "): " + std::to_string(tail_ - head_) + " of " + std::to_string(capacity_);
+    return name_ + " (" + producer_.name() + " to " + consumer_.name() + "): " + std::to_string(items()) +
+           " of " + std::to_string(capacity_);
   }
 
  private:

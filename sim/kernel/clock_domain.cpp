@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "model/error.h"
+#include "sim/kernel/observer.h"
 #include "sim/kernel/unit.h"
 
 namespace splatscope::sim {
@@ -55,6 +56,7 @@ void ClockDomain::visit(Cycle now) {
     }
   }
   if (scheduler_ == Scheduler::referee) due = ~std::uint64_t{0} >> (64 - units_.size());
+  if (now >= next_sample_) sample();
   call(due);
 }
 
@@ -63,9 +65,40 @@ void ClockDomain::call(std::uint64_t due) {
     const int place = std::countr_zero(due);
     const auto index = static_cast<std::size_t>(place);
     const Step step = units_[index]->advance(now_);
-    books_[index].enter(step.book, reference_cycle(now_));
+    const Cycle at = reference_cycle(now_);
+    if (!watches_.empty() && step.book != books_[index].book) tell(index, at);
+    books_[index].enter(step.book, at);
     if (step.next != kNever) wake(place, step.next > now_ ? step.next : now_ + 1);
   }
+}
+
+void ClockDomain::observe(Observer& observer, bool samples) {
+  watches_.push_back({&observer, samples ? Cycle{0} : kNever});
+  if (samples) next_sample_ = 0;
+}
+
+void ClockDomain::tell(std::size_t place, Cycle until) const {
+  const Books& books = books_[place];
+  if (until <= books.since) return;
+  for (const Watch& watch : watches_) watch.observer->booked(*units_[place], books.book, books.since, until);
+}
+
+void ClockDomain::sample() {
+  next_sample_ = kNever;
+  for (Watch& watch : watches_) {
+    if (now_ >= watch.next_sample) watch.next_sample = watch.observer->sample(now_);
+    next_sample_ = std::min(next_sample_, watch.next_sample);
+  }
+}
+
+void ClockDomain::finish_observing(Cycle end) {
+  for (std::size_t place = 0; place < units_.size(); ++place) tell(place, end);
+}
+
+Cycle ClockDomain::busy(std::size_t place, Cycle at) const {
+  const Books& books = books_[place];
+  const bool now = books.book == Step::kBusy && at > books.since;
+  return books.cycles[Step::kBusy] + (now ? at - books.since : 0);
 }
 
 Books ClockDomain::closed_books(std::size_t place, Cycle end) const {

@@ -10,6 +10,7 @@
 
 namespace splatscope::sim {
 
+class Observer;
 class Unit;
 
 enum class Scheduler : std::uint8_t {
@@ -80,6 +81,14 @@ class ClockDomain {
     return period_ == reference_ ? cycle : cycle * period_ / reference_;
   }
 
+  // Tells `observer`, which outlives the run, what its units book; where `samples`, it is also asked to
+  // sample.
+  void observe(Observer& observer, bool samples);
+  // The last of it: what the units have booked since their last change, up to reference cycle `end`.
+  void finish_observing(Cycle end);
+  // Reference cycles before `at` that unit `place` was busy so far.
+  Cycle busy(std::size_t place, Cycle at) const;
+
   void set_peers(std::vector<const ClockDomain*> peers) { peers_ = std::move(peers); }
   const std::vector<Unit*>& units() const { return units_; }
   // The books of unit `place`, closed at reference cycle `end`. ModelError where they do not add up to it.
@@ -88,7 +97,14 @@ class ClockDomain {
  private:
   static constexpr Cycle kWheel = 64;
 
+  struct Watch {
+    Observer* observer;
+    Cycle next_sample;  // kNever: none
+  };
+
   void visit(Cycle now);
+  void tell(std::size_t place, Cycle until) const;
+  void sample();
   void call(std::uint64_t due);
 
   std::string name_;
@@ -104,6 +120,8 @@ class ClockDomain {
   std::vector<Unit*> units_;
   std::vector<Books> books_;
   std::vector<const ClockDomain*> peers_;
+  std::vector<Watch> watches_;
+  Cycle next_sample_ = kNever;  // the earliest of the watches
 };
 
 }  // namespace splatscope::sim

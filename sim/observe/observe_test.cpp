@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "sim/observe/time_series.h"
+#include "sim/observe/timeline.h"
+#include "sim/testing/random_trace.h"
+
+namespace splatscope::sim {
+namespace {
+
+using testing::RandomMaker;
+using testing::RandomTrace;
+using Json = nlohmann::json;
+
+struct Observed {
+  Result plain, result;
+  std::string timeline, series;
+  Cycle cut_at = 0;
+};
+
+Observed observe(unsigned seed, const Timeline::Window& window, Cycle interval = 100) {
+  RandomMaker maker(seed);
+  const RandomTrace made = maker.trace();
+  const Machine machine = maker.machine();
+  std::ostringstream timeline_text, series_text;
+  Timeline timeline(timeline_text, made.trace, window);
+  TimeSeries series(series_text, interval);
+  Observer* const observers[] = {&timeline, &series};
+  Observed out;
+  out.plain = simulate(made.trace, made.work, machine);
+  out.result = simulate(made.trace, made.work, machine, Scheduler::skip_ahead, {}, observers);
+  out.timeline = timeline_text.str();
+  out.series = series_text.str();
+  out.cut_at = timeline.cut_at();
+  return out;
+}
+
+const UnitBooks& books_of(const Result& result, const std::string& unit) {
+  return *std::ranges::find(result.units, unit, &UnitBooks::name);
+}
+
+// The slices of each track by the track's name, and within it the cycles by the slice's name.
+std::map<std::string, std::map<std::string, Cycle>> cycles_of(const std::string& timeline) {
+  const Json events = Json::parse(timeline).at("traceEvents");
+  std::map<int, std::string> tracks;
+  for (const Json& event : events) {
+    if (event.at("name") == "thread_name") tracks[event.at("tid")] = event.at("args").at("name");
+  }
+  std::map<std::string, std::map<std::string, Cycle>> cycles;
+  for (const Json& event : events) {
+    if (event.at("ph") == "X")
+      cycles[tracks.at(event.at("tid"))][event.at("name")] += event.at("dur").get<Cycle>();
+  }
+  return cycles;
+}
+
+TEST(Observe, ChangesNothing) {
+  const Observed run = observe(3, {});
+  EXPECT_EQ(run.plain.event_hash, run.result.event_hash);
+  EXPECT_EQ(run.plain.cycles, run.result.cycles);
+}
+
+TEST(Timeline, SlicesAddUpToTheBooks) {
+  const Observed run = observe(7, {});
+  auto cycles = cycles_of(run.timeline);
+  Cycle commands = 0;
+  for (const auto& [name, sum] : cycles.at("commands")) commands += sum;
+  EXPECT_EQ(run.result.cycles, commands);
+  for (const UnitBooks& books : run.result.units) {
+    EXPECT_EQ(books.busy, cycles[books.name]["busy"]) << books.name;
+    EXPECT_EQ(books.starved, cycles[books.name]["starved"]) << books.name;
+    for (const auto& [by, sum] : books.blocked_by) {
+      EXPECT_EQ(sum, cycles[books.name]["blocked by " + by]) << books.name;
+    }
+  }
+}
+
+TEST(Timeline, ShowsTheWindowAlone) {
+  const Observed all = observe(7, {});
+  const Cycle first = all.result.cycles / 4, last = all.result.cycles / 2;
+  const Json events = Json::parse(observe(7, {.first = first, .last = last}).timeline).at("traceEvents");
+  std::size_t shown = 0;
+  for (const Json& event : events) {
+    if (!event.contains("ts")) continue;
+    ++shown;
+    EXPECT_GE(event.at("ts").get<Cycle>(), first);
+    EXPECT_LE(event.at("ts").get<Cycle>() + event.value("dur", Cycle{1}), last + 1);
+  }
+  EXPECT_GT(shown, 10u);
+  EXPECT_LT(shown, Json::parse(all.timeline).at("traceEvents").size());
+}
+
+TEST(Timeline, EndsWellWhereItIsCutShort) {
+  const Observed run = observe(7, {.most_bytes = 4000});
+  EXPECT_LT(run.cut_at, run.result.cycles);
+  const auto cycles = cycles_of(run.timeline);
+  EXPECT_TRUE(cycles.contains("commands"));
+  EXPECT_EQ(kNever, observe(7, {}).cut_at);
+}
+
+TEST(TimeSeries, RowsAddUpToTheResult) {
+  const Observed run = observe(11, {}, 50);
+  std::istringstream in(run.series);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(in, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+    ASSERT_EQ(rows.front().size(), rows.back().size());
+  }
+  ASSERT_GT(rows.size(), 3u);
+  EXPECT_EQ(std::to_string(run.result.cycles), rows.back().front());
+  const auto sum = [&](const std::string& column, bool shares) {
+    const auto at = static_cast<std::size_t>(std::ranges::find(rows.front(), column) - rows.front().begin());
+    double total = 0, before = 0;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const double cycle = std::stod(rows[i].front());
+      total += std::stod(rows[i].at(at)) * (shares ? cycle - before : 1);
+      before = cycle;
+    }
+    return total;
+  };
+  // Shares are printed with six digits.
+  EXPECT_NEAR(static_cast<double>(books_of(run.result, "raster").busy), sum("raster.busy", true),
+              1e-5 * static_cast<double>(run.result.cycles));
+  for (const UnitStatistic& statistic : run.result.statistics) {
+    EXPECT_EQ(static_cast<double>(statistic.value), sum(statistic.unit_name + "." + statistic.name, false));
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::sim

@@ -1,0 +1,56 @@
+#include "sim/observe/time_series.h"
+
+#include <algorithm>
+#include <ostream>
+
+#include "sim/machine.h"
+
+namespace splatscope::sim {
+
+TimeSeries::TimeSeries(std::ostream& out, Cycle interval)
+    : out_(out), interval_(std::max<Cycle>(interval, 1)) {}
+
+void TimeSeries::begin(const SimulatedMachine& machine) {
+  machine_ = &machine;
+  out_ << "cycle";
+  for (const auto& unit : machine.units) {
+    out_ << ',' << unit->name() << ".busy";
+    for (const Statistic& statistic : unit->statistics()) {
+      out_ << ',' << unit->name() << '.' << statistic.name;
+      statistics_.push_back(0);
+    }
+  }
+  for (const auto& channel : machine.channels) out_ << ',' << channel->name() << ".items";
+  out_ << '\n';
+  busy_.resize(machine.units.size());
+}
+
+void TimeSeries::row(Cycle now) {
+  out_ << now;
+  std::size_t unit = 0, statistic = 0;
+  for (const ClockDomain* domain : {&machine_->core, &machine_->bus}) {
+    for (std::size_t place = 0; place < domain->units().size(); ++place, ++unit) {
+      const Cycle busy = domain->busy(place, now);
+      out_ << ',' << static_cast<double>(busy - busy_[unit]) / static_cast<double>(now - last_);
+      busy_[unit] = busy;
+      for (const Statistic& entry : domain->units()[place]->statistics()) {
+        out_ << ',' << entry.value - statistics_[statistic];
+        statistics_[statistic++] = entry.value;
+      }
+    }
+  }
+  for (const auto& channel : machine_->channels) out_ << ',' << channel->items();
+  out_ << '\n';
+  last_ = now;
+}
+
+Cycle TimeSeries::sample(Cycle now) {
+  if (now > 0) row(now);
+  return now + interval_;
+}
+
+void TimeSeries::end(const Result& result) {
+  if (result.cycles > last_) row(result.cycles);
+}
+
+}  // namespace splatscope::sim

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "sim/kernel/observer.h"
+#include "sim/simulate.h"
+
+namespace splatscope::sim {
+
+// A run as a timeline in Chrome's trace event format, which Perfetto opens: a track for the commands and one
+// for each unit (busy, starved, blocked by whom; idle is left empty), counters for the items in each channel
+// and for the use of each memory channel's data bus. One microsecond there is one core cycle. Written as a
+// stream; beside the commands' track no longer than `most_bytes`.
+class Timeline final : public Observer {
+ public:
+  struct Window {
+    Cycle first = 0, last = kNever;  // core cycles shown
+    Cycle counter_interval = 256;    // cycles between two values of a counter
+    std::uint64_t most_bytes = 48'000'000;
+  };
+  // `trace` is what will be simulated. `out` and `trace` outlive the timeline.
+  Timeline(std::ostream& out, const Trace& trace, const Window& window);
+
+  void begin(const SimulatedMachine& machine) override;
+  void booked(const Unit& unit, std::uint32_t book, Cycle from, Cycle until) override;
+  Cycle sample(Cycle now) override;
+  // Writes the commands' track and the end of the text.
+  void end(const Result& result) override;
+
+  // What did not fit into `most_bytes` began here; kNever: everything did.
+  Cycle cut_at() const { return cut_at_; }
+
+ private:
+  struct Counter {
+    std::string name;
+    std::uint64_t value = 0;  // of the last sample
+  };
+
+  void write(const std::string& event, Cycle at);
+  std::string slice(std::uint32_t track, const std::string& name, Cycle from, Cycle until) const;
+  void count(Counter& counter, const char* unit, std::uint64_t value, Cycle now);
+
+  std::ostream& out_;
+  const Trace& trace_;
+  Window window_;
+  const SimulatedMachine* machine_ = nullptr;
+  std::vector<Counter> channels_, buses_;
+  std::vector<std::uint64_t> data_clocks_;  // of each memory channel at the last sample
+  Cycle sampled_at_ = 0;
+  std::uint64_t bytes_ = 0;
+  Cycle cut_at_ = kNever;
+};
+
+}  // namespace splatscope::sim

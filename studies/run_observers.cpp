@@ -1,0 +1,82 @@
+#include "studies/run_observers.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+
+#include "model/error.h"
+#include "sim/observe/time_series.h"
+#include "traces/output_files.h"
+
+namespace splatscope::studies {
+namespace {
+
+// A cycle, or `absent` for an empty text; false where it is neither.
+bool parse_cycle(std::string_view text, sim::Cycle absent, sim::Cycle& cycle) {
+  cycle = absent;
+  if (text.empty()) return true;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), cycle);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+}  // namespace
+
+sim::Timeline::Window window_of(const std::string& text) {
+  sim::Timeline::Window window;
+  const std::size_t colon = text.find(':');
+  if (text.empty()) return window;
+  const std::string_view view = text;
+  if (colon == std::string::npos || !parse_cycle(view.substr(0, colon), 0, window.first) ||
+      !parse_cycle(view.substr(colon + 1), sim::kNever, window.last) || window.first > window.last) {
+    throw UserError("--timeline-window", 0,
+                    fmt::format("\"{}\", expected FIRST:LAST, two core cycles", text));
+  }
+  return window;
+}
+
+struct RunObservers::File {
+  explicit File(const std::string& path) : name(path), file(path), out(file.temporary(), std::ios::binary) {
+    if (!out) throw UserError(path, 0, "cannot be written, expected a file in a writable folder");
+  }
+  std::string name;
+  traces::OutputFile file;
+  std::ofstream out;
+  std::unique_ptr<sim::Observer> observer;
+};
+
+template <class T, class... Arguments>
+T& RunObservers::add(const std::string& path, Arguments&&... arguments) {
+  files_.push_back(std::make_unique<File>(path));
+  auto made = std::make_unique<T>(files_.back()->out, std::forward<Arguments>(arguments)...);
+  T& observer = *made;
+  files_.back()->observer = std::move(made);
+  observers_.push_back(&observer);
+  return observer;
+}
+
+RunObservers::RunObservers(const ObserveOptions& options, const Trace& trace) {
+  if (!options.timeline.empty())
+    timeline_ = &add<sim::Timeline>(options.timeline, trace, window_of(options.window));
+  if (!options.counters.empty()) add<sim::TimeSeries>(options.counters, options.counters_every);
+}
+
+RunObservers::~RunObservers() = default;
+
+std::vector<std::string> RunObservers::commit() {
+  std::vector<std::string> said;
+  for (const auto& file : files_) {
+    file->out.close();
+    if (!file->out) throw std::runtime_error(file->name + ": not all could be written: is the disk full?");
+    file->file.commit();
+    said.push_back(file->name);
+  }
+  if (timeline_ && timeline_->cut_at() != sim::kNever) {
+    said.push_back(
+        fmt::format("the timeline is cut short at cycle {}: --timeline-window chooses what it shows",
+                    timeline_->cut_at()));
+  }
+  return said;
+}
+
+}  // namespace splatscope::studies

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "sim/kernel/observer.h"
+#include "sim/observe/timeline.h"
+
+// Files that a run writes while it goes on, about what happens in the machine.
+namespace splatscope::studies {
+
+struct ObserveOptions {
+  std::string timeline;                   // file for Perfetto; empty: none
+  std::string window;                     // of the timeline, core cycles: "FIRST:LAST"; empty: all
+  std::string counters;                   // file for a table (CSV); empty: none
+  std::uint64_t counters_every = 10'000;  // core cycles a row
+};
+
+// "1000:2000", "1000:", ":2000" or "". Throws UserError (file "--timeline-window") for anything else.
+sim::Timeline::Window window_of(const std::string& text);
+
+class RunObservers {
+ public:
+  // Of a run of `trace`, which outlives them. Throws UserError where a window is wrong or a file cannot be
+  // made.
+  RunObservers(const ObserveOptions& options, const Trace& trace);
+  ~RunObservers();
+
+  std::span<sim::Observer* const> observers() const { return observers_; }
+  // After the run: the files take their places. Throws std::runtime_error where not all could be written.
+  // Returns lines that say what was written.
+  std::vector<std::string> commit();
+
+ private:
+  struct File;
+  template <class T, class... Arguments>
+  T& add(const std::string& path, Arguments&&... arguments);
+
+  std::vector<std::unique_ptr<File>> files_;
+  std::vector<sim::Observer*> observers_;
+  const sim::Timeline* timeline_ = nullptr;
+};
+
+}  // namespace splatscope::studies
