@@ -1,5 +1,6 @@
 #include "sim/simulate.h"
 
+#include <array>
 #include <bit>
 
 namespace splatscope::sim {

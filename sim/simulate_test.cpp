@@ -33,32 +33,6 @@ const UnitBooks* books_of(const Result& result, std::string_view unit) {
 
 class RandomTraces : public ::testing::TestWithParam<unsigned> {};
 
-TEST_P(RandomTraces, TheRefereeAgreesWithSkipAheadInEveryEventAndEveryBook) {
-  SCOPED_TRACE("seed " + std::to_string(GetParam()));
-  RandomMaker maker(GetParam());
-  const RandomTrace made = maker.trace();
-  const Machine machine = maker.machine();
-  const Result fast = simulate(made.trace, made.work, machine, Scheduler::skip_ahead);
-  const Result dull = simulate(made.trace, made.work, machine, Scheduler::referee);
-  EXPECT_EQ(fast.event_hash, dull.event_hash);
-  EXPECT_EQ(fast.cycles, dull.cycles);
-  EXPECT_EQ(fast.command_ends, dull.command_ends);
-  EXPECT_EQ(fast.frame_cycles, dull.frame_cycles);
-  ASSERT_EQ(fast.units.size(), dull.units.size());
-  for (std::size_t i = 0; i < fast.units.size(); ++i) {
-    const UnitBooks& a = fast.units[i];
-    const UnitBooks& b = dull.units[i];
-    EXPECT_EQ(a.busy + a.starved + a.blocked + a.idle, fast.cycles) << a.name;
-    EXPECT_EQ(a.busy, b.busy) << a.name;
-    EXPECT_EQ(a.starved, b.starved) << a.name;
-    EXPECT_EQ(a.idle, b.idle) << a.name;
-    EXPECT_EQ(a.blocked_by, b.blocked_by) << a.name;
-  }
-  for (std::size_t i = 0; i < fast.statistics.size(); ++i) {
-    EXPECT_EQ(fast.statistics[i].value, dull.statistics[i].value) << fast.statistics[i].name;
-  }
-}
-
 TEST_P(RandomTraces, EveryItemOfTheWorkIsDoneOnce) {
   SCOPED_TRACE("seed " + std::to_string(GetParam()));
   RandomMaker maker(GetParam());

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "studies/fidelity.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
 
@@ -9,6 +10,7 @@ namespace splatscope::studies {
 
 std::span<const Study> own_studies() {
   static constexpr std::array kStudies = {
+      Study{"fidelity", "the five fidelities: speed against accuracy", study_fidelity},
       Study{"vertex-data",
             "instructions against bytes a vertex, in video and in AGP memory (Ren 2002, section 8)",
             study_vertex_data},

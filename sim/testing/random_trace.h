@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "model/command/commands.h"
@@ -18,7 +21,13 @@ struct RandomTrace {
 
 class RandomMaker {
  public:
-  explicit RandomMaker(unsigned seed) : random_(seed) {}
+  explicit RandomMaker(unsigned seed) : next_([random = std::mt19937(seed)]() mutable { return random(); }) {}
+  // From choices made elsewhere; where they end, the least of everything. So that a failing case can be
+  // shrunk, by fewer and by lower choices, to a smallest one (MacIver and Donaldson 2020).
+  explicit RandomMaker(std::vector<std::uint32_t> choices)
+      : next_([choices = std::move(choices), i = std::size_t{0}]() mutable {
+          return i < choices.size() ? choices[i++] : 0;
+        }) {}
 
   RandomTrace trace() {
     RandomTrace made;
@@ -44,38 +53,49 @@ class RandomMaker {
     return made;
   }
 
+  // Queues hold 1 to 16 items; caches and DRAM are small, so that a small trace fills them.
   Machine machine() {
     Machine made;
-    made.vertex = {int(number(1, 3)), int(number(1, 4)), int(number(1, 4)),
-                   int(number(1, 5)), int(number(1, 3)), chance(0.5),
-                   chance(0.5),       int(number(0, 2)), 18,
-                   int(number(1, 4))};
-    made.fetch = {32 << number(0, 1), 4 << number(0, 2), int(number(1, 8)), int(number(1, 4)),
-                  int(number(1, 3))};
-    made.primitive = {int(number(1, 2)), int(number(0, 5)), int(number(1, 8))};
-    made.setup = {int(number(1, 4)), int(number(1, 12)), int(number(1, 8))};
-    made.raster = {int(number(1, 2)), int(number(1, 8)), int(number(1, 8))};
-    made.depth = {4 << number(0, 3), 1 << number(0, 2), int(number(1, 16)),
-                  int(number(1, 8)), int(number(1, 8)), chance(0.5)};
-    made.texture = {4 << number(0, 4),  1 << number(0, 2), 16,
-                    8 << number(0, 1),  int(number(1, 4)), int(number(1, 32)),
-                    int(number(1, 12)), int(number(1, 8))};
-    made.pixel = {int(number(1, 2)), int(number(1, 2)), int(number(1, 8)), int(number(1, 8))};
-    made.blend = {4 << number(0, 3), 1 << number(0, 2), int(number(1, 16))};
-    made.memory.channels = 1 << number(0, 2);
-    made.memory.interleave_bytes = 64 << number(0, 2);
-    made.memory.banks = 1 << number(0, 3);
+    const auto depth = [&] { return int(number(1, 16)); };
+    const auto power = [&](int least, std::uint32_t steps) { return least << number(0, steps); };
+    made.clock.bus_megahertz = number(20, 400);
+    made.vertex = {int(number(1, 4)),
+                   int(number(1, 4)),
+                   int(number(1, 6)),
+                   int(number(1, 6)),
+                   int(number(1, 4)),
+                   chance(0.5),
+                   chance(0.5),
+                   int(number(0, 4)),
+                   18,
+                   depth()};
+    made.memory.interleave_bytes = power(64, 2);
+    made.memory.channels = power(1, 3);
+    made.memory.burst_bytes = power(8, 2);
+    made.memory.channel_bytes_per_clock = std::min(power(4, 2), made.memory.burst_bytes);
+    made.memory.banks = power(1, 3);
+    made.memory.row_bytes = power(256, 3);
     made.memory.precharge_clocks = int(number(0, 8));
     made.memory.activate_clocks = int(number(0, 8));
     made.memory.cas_clocks = int(number(1, 8));
     made.memory.row_active_clocks = int(number(0, 16));
+    made.memory.write_recovery_clocks = int(number(0, 8));
     made.memory.turnaround_clocks = int(number(0, 4));
-    made.memory.request_queue = int(number(1, 8));
-    made.memory.schedule_queue = int(number(1, 16));
-    made.memory.bypass_limit = int(number(0, 8));
+    made.memory.request_queue = depth();
+    made.memory.schedule_queue = depth();
+    made.memory.bypass_limit = int(number(0, 16));
     made.memory.return_latency = int(number(1, 80));
-    made.agp.latency_nanoseconds = number(0, 500);
-    made.agp.queue = int(number(1, 8));
+    made.fetch = {power(16, 2), power(4, 2), depth(), int(number(1, 4)), int(number(1, 3))};
+    made.primitive = {int(number(1, 3)), int(number(0, 5)), depth()};
+    made.setup = {int(number(1, 4)), int(number(1, 12)), depth()};
+    made.raster = {int(number(1, 2)), int(number(1, 8)), depth()};
+    made.depth = {power(4, 3), power(1, 2), depth(), int(number(1, 8)), depth(), chance(0.5)};
+    made.texture = {power(4, 4),       power(1, 2), power(16, 2),       8,
+                    int(number(1, 4)), depth(),     int(number(1, 12)), depth()};
+    made.texture.fill_bytes = std::min(power(8, 3), made.texture.line_bytes);
+    made.pixel = {int(number(1, 4)), int(number(1, 2)), int(number(1, 8)), depth()};
+    made.blend = {power(4, 3), power(1, 2), depth()};
+    made.agp = {power(4, 2), double(number(0, 500)), depth()};
     made.host.command_nanoseconds = number(0, 2000);
     made.host.uncached_read_nanoseconds = number(1, 40);
     if (chance(0.2)) made.numbers.frame = FrameFormat::float32;  // lines over several memory channels
@@ -85,9 +105,9 @@ class RandomMaker {
 
  private:
   std::uint32_t number(std::uint32_t least, std::uint32_t most) {
-    return std::uniform_int_distribution<std::uint32_t>(least, most)(random_);
+    return least + next_() % (most - least + 1);
   }
-  bool chance(double probability) { return std::bernoulli_distribution(probability)(random_); }
+  bool chance(double probability) { return number(0, 99) >= 100 * (1 - probability); }
 
   void add_draw(RandomTrace& made, bool has_color) {
     Draw draw;
@@ -133,7 +153,7 @@ class RandomMaker {
     work.triangles.push_back(triangle);
   }
 
-  std::mt19937 random_;
+  std::function<std::uint32_t()> next_;
 };
 
 // One draw of `triangles` triangles with three vertices and four quads each.

@@ -1,0 +1,26 @@
+#include "studies/peak_memory.h"
+
+#include <malloc.h>
+
+#include <fstream>
+#include <string>
+
+namespace splatscope::studies {
+
+bool restart_peak_memory() {
+  malloc_trim(0);
+  std::ofstream file("/proc/self/clear_refs");
+  file << 5;  // proc(5): reset the peak resident set size
+  return static_cast<bool>(file.flush());
+}
+
+std::size_t peak_memory() {
+  std::ifstream file("/proc/self/status");
+  for (std::string key; file >> key; file.ignore(256, '\n')) {
+    std::size_t kibibytes = 0;
+    if (key == "VmHWM:" && file >> kibibytes) return kibibytes * 1024;
+  }
+  return 0;
+}
+
+}  // namespace splatscope::studies
