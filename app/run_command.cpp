@@ -29,6 +29,8 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
   std::cout << fmt::format("{} on {}\n", input.name, machine.title);
   if (input.recorded)
     std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels, traces::describe(input.skipped));
+  if (input.recorded && input.recorded->blocks.drawn > 0)
+    std::cout << fmt::format("  {}\n", traces::describe(input.recorded->blocks));
   if (input.mesh.triangles > 0) std::cout << fmt::format("  {}\n", traces::describe(input.mesh));
   const RenderCounters& c = run.rendered.counters;
   std::cout << fmt::format(

@@ -96,9 +96,11 @@ kernels::ScreenMap screen_map_by_name(std::string_view name) {
 }
 
 kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene, kernels::ScreenMap map) {
-  return kernels::screen_space_ewa(
-      traces::view_of(scene.camera, scene.frame), reference_surfels(scene),
-      {.filter = filter_of(scene), .map = map, .depth_offset = scene.splatting.depth_offset});
+  return kernels::screen_space_ewa(traces::view_of(scene.camera, scene.frame), reference_surfels(scene),
+                                   {.filter = filter_of(scene),
+                                    .map = map,
+                                    .depth_offset = scene.splatting.depth_offset,
+                                    .cull_back_faces = scene.splatting.faces == traces::Faces::front});
 }
 
 double psnr(const Frame& frame, const kernels::SplatSums& reference) {

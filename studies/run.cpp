@@ -106,8 +106,15 @@ Json mesh_json(const traces::MeshCounts& mesh) {
           {"textures_unreadable", mesh.textures_unreadable}};
 }
 
+Json blocks_json(const traces::BlockCounts& blocks) {
+  return {{"drawn", blocks.drawn},
+          {"outside_frustum", blocks.outside_frustum},
+          {"facing_away", blocks.facing_away}};
+}
+
 Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped) {
   return {{"drawn", recorded.surfels},
+          {"blocks", blocks_json(recorded.blocks)},
           {"weights_captured", recorded.weights_captured},
           {"weights_at_edges", recorded.weights_at_edges},
           {"weights_by_default", recorded.weights_by_default},

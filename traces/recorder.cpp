@@ -4,18 +4,41 @@
 
 namespace splatscope::traces {
 
+namespace {
+
+SplatPass pass_of(Algorithm algorithm) {
+  const bool per_pixel = algorithm == Algorithm::ewa_per_pixel;
+  return {
+      .prefilter = algorithm != Algorithm::no_ewa, .sum_weights = per_pixel, .normalize_on_host = per_pixel};
+}
+
+// Block by block of an LDC tree.
+Trace record_blocks(const Scene& scene, std::span<const VertexWeights> weights, RecordCounts& counts) {
+  const LdcTree tree = build_ldc_tree(scene.surfels, scene.hierarchy.block_surfels);
+  std::vector<VertexWeights> ordered;
+  ordered.reserve(tree.order.size());
+  for (const std::uint32_t surfel : tree.order) ordered.push_back(weights[surfel]);
+  const kernels::View view = view_of(scene.camera, scene.frame);
+  std::vector<SurfelBuffer> buffers;
+  if (!tree.levels.empty()) buffers = pack(tree.levels.front(), ordered);
+  const std::vector<DrawnRange> frame =
+      draw_finest(tree, view, scene.splatting, scene.hierarchy.culling, counts.blocks);
+  counts.surfels = counts.blocks.surfels;
+  return splat_trace(buffers, {&frame, 1}, view, scene.splatting, pass_of(scene.splatting.algorithm));
+}
+
+}  // namespace
+
 Recording record(const Scene& scene, const CapturedWeights& captured) {
-  const Splatting& settings = scene.splatting;
-  const bool per_pixel = settings.algorithm == Algorithm::ewa_per_pixel;
   Recording out;
-  out.counts.surfels = scene.surfels.size();
-  out.trace = splat_trace(scene.surfels, view_of(scene.camera, scene.frame), settings,
-                          {.weights = captured.weights,
-                           .prefilter = settings.algorithm != Algorithm::no_ewa,
-                           .sum_weights = per_pixel});
-  if (per_pixel) {
-    out.trace.commands.emplace_back(NormalizeOnHost{});
+  if (scene.hierarchy.culling == Culling::none) {
+    out.counts.surfels = scene.surfels.size();
+    out.trace = splat_trace({scene.surfels, captured.weights}, view_of(scene.camera, scene.frame),
+                            scene.splatting, pass_of(scene.splatting.algorithm));
   } else {
+    out.trace = record_blocks(scene, captured.weights, out.counts);
+  }
+  if (scene.splatting.algorithm != Algorithm::ewa_per_pixel) {
     out.counts.weights_captured = captured.captured;
     out.counts.weights_at_edges = captured.at_edges;
     out.counts.weights_by_default = captured.unseen;

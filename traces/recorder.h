@@ -4,6 +4,7 @@
 
 #include "model/command/commands.h"
 #include "model/number/formats.h"
+#include "traces/hierarchy/block_drawing.h"
 #include "traces/scene.h"
 #include "traces/weight_capture.h"
 
@@ -13,6 +14,7 @@ namespace splatscope::traces {
 // Host-side facts of a recording that a run reports beside its counters.
 struct RecordCounts {
   std::size_t surfels = 0;              // drawn
+  BlockCounts blocks;                   // all 0 where the scene has no hierarchy
   std::size_t weights_captured = 0;     // surfels seen from at least one view of the capture
   std::size_t weights_at_edges = 0;     // of these: with a weight for each vertex
   std::size_t weights_by_default = 0;   // surfels seen from none: they get the median of the others

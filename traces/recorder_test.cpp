@@ -114,6 +114,26 @@ TEST(Recorder, TextureIsAsLongAsTheSceneSays) {
   EXPECT_EQ(64u * 64, trace.textures[0].texels.size());
 }
 
+// 20,000 surfels of 224 bytes in two buffers, the first of 3.5 MiB, and indices for one.
+TEST(Recorder, VertexBuffersLieInVideoMemoryAsFarAsItGoes) {
+  Scene scene = small_plane(Algorithm::ewa_per_pixel);
+  scene.surfels.resize(20000, scene.surfels.front());
+  scene.hierarchy = {Culling::off, 256};
+  const auto places = [&] {
+    std::vector<MemoryPlace> places;
+    for (const Buffer& buffer : record(scene, NumberFormats{}).trace.buffers) places.push_back(buffer.place);
+    return places;
+  };
+  using enum MemoryPlace;
+  EXPECT_EQ(places(), (std::vector{video, video, video}));
+  scene.splatting.video_megabytes = 4;
+  EXPECT_EQ(places(), (std::vector{video, video, agp}));
+  scene.splatting.video_megabytes = 0;
+  EXPECT_EQ(places(), (std::vector{agp, agp, agp}));
+  scene.splatting.vertex_memory = VertexMemory::video;
+  EXPECT_EQ(places(), (std::vector{video, video, video}));
+}
+
 // At a surfel of a square grid with h = sqrt 2 spacings the weights within the cutoff sum to (1 + 4 exp(-1/4)
 // + 4 exp(-1/2)) / 2 pi = 1.041; four more of exp(-1) lie on the cutoff itself and may count: 1.275.
 TEST(Recorder, CapturedWeightsAreTheInverseSums) {

@@ -46,6 +46,11 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   scene.frame = {settings.width, settings.height};
   scene.splatting = settings.splatting;
   scene.capture = settings.capture;
+  scene.hierarchy = settings.hierarchy;
+  const bool plane = is_plane(settings.surfels);
+  if (scene.splatting.faces == Faces::automatic) scene.splatting.faces = plane ? Faces::both : Faces::front;
+  if (scene.hierarchy.culling == Culling::automatic)
+    scene.hierarchy.culling = plane ? Culling::none : Culling::blocks;
   Surfels surfels = make_surfels(settings, file.parent_path(), progress);
   scene.surfels = std::move(surfels.surfels);
   scene.skipped = surfels.skipped;

@@ -39,7 +39,17 @@ struct Frame {
 // The three algorithms of Table 1 (Ren 2002, section 8).
 enum class Algorithm { no_ewa, ewa_per_pixel, ewa_per_surfel };
 
-enum class VertexMemory { video, agp };
+// Automatic: the card's own memory as far as it goes, then AGP memory.
+enum class VertexMemory { automatic, video, agp };
+
+enum class Faces { automatic, both, front };
+
+enum class Culling {
+  automatic,
+  none,   // no hierarchy: every surfel, in the scene's order
+  off,    // every block of the hierarchy
+  blocks  // what may be seen
+};
 
 // How the visibility pass moves the depth image away from the eye (Ren 2002, section 5.1, Fig. 4).
 enum class DepthOffsetScheme { viewing_ray, camera_z };
@@ -53,7 +63,9 @@ struct Splatting {
   double sigma = 0;  // standard deviation of the reconstruction filter, in units of a surfel's radius
   bool circular_cutoff = false;  // texels beyond the cutoff are 0; else the whole square is used
   int texture_length = 0;        // texels along an edge of the alpha texture; 0: Eq. 16's
-  VertexMemory vertex_memory = VertexMemory::video;
+  VertexMemory vertex_memory = VertexMemory::automatic;
+  double video_megabytes = 0;  // what vertex and index buffers may take of the card's memory
+  Faces faces = Faces::both;   // of a Scene, never automatic: surfels that face away may be dropped
   int visibility_program = 0;  // places in kernels::visibility_programs() and ewa_programs()
   int ewa_program = 0;
 };
@@ -66,6 +78,12 @@ struct Capture {
   // Only surfels whose centres lie in this box (object units, faces included) are captured.
   glm::dvec3 box_min{};
   glm::dvec3 box_max{};
+};
+
+// How the surfels are drawn block by block (Ren 2002, section 6.2).
+struct Hierarchy {
+  Culling culling = Culling::none;  // of a Scene, never automatic
+  int block_surfels = 0;            // layered depth pixels of a block
 };
 
 // Surfels that were left out while loading, by the first reason that held.
@@ -87,6 +105,7 @@ struct Scene {
   Frame frame;
   Splatting splatting;
   Capture capture;
+  Hierarchy hierarchy;
 };
 
 // Reads a scene file (TOML). Each key has a default (scene_keys.h). A surfel file's name is relative to the

@@ -109,14 +109,31 @@ const std::array kKeys = {
              "width and height of the alpha texture; 0: the least that Eq. 16 allows for `cutoff`",
              IntegerValue{[](S& s) -> int& { return s.splatting.texture_length; }, 0, 0, 4096}},
     SceneKey{
-        "splatting", "vertex_memory", "", "where the vertex buffers lie",
-        ChoiceValue{[](S& s, int i) { s.splatting.vertex_memory = VertexMemory(i); }, {"video", "agp"}, 0}},
+        "splatting", "vertex_memory", "",
+        "where the vertex buffers lie; auto: in video memory until `video_megabytes` are full",
+        ChoiceValue{
+            [](S& s, int i) { s.splatting.vertex_memory = VertexMemory(i); }, {"auto", "video", "agp"}, 0}},
+    // Of a card with 64 MB, the Radeon 8500, less the frame and the desktop; a Ti 4400 has 128.
+    SceneKey{"splatting", "video_megabytes", "MiB", "video memory that is free for vertices and indices",
+             RealValue{[](S& s) -> double& { return s.splatting.video_megabytes; }, 56, 0, 4096}},
+    SceneKey{"splatting", "faces", "",
+             "which surfels are drawn; front: those that face the eye; auto: both of the plane, else front",
+             ChoiceValue{[](S& s, int i) { s.splatting.faces = Faces(i); }, {"auto", "both", "front"}, 0}},
     SceneKey{"splatting", "visibility_program", "", "program of the first pass, with its vertices",
              ChoiceValue{[](S& s, int i) { s.splatting.visibility_program = i; },
                          names_of(kernels::visibility_programs()), 0}},
     SceneKey{
         "splatting", "ewa_program", "", "program of the second pass where it filters by EWA",
         ChoiceValue{[](S& s, int i) { s.splatting.ewa_program = i; }, names_of(kernels::ewa_programs()), 0}},
+
+    SceneKey{
+        "hierarchy", "culling", "",
+        "none: no hierarchy; off: every block of it is drawn; blocks: those that may be seen, for the "
+        "same picture; auto: none for the plane, else blocks",
+        ChoiceValue{
+            [](S& s, int i) { s.hierarchy.culling = Culling(i); }, {"auto", "none", "off", "blocks"}, 0}},
+    SceneKey{"hierarchy", "block_surfels", "surfels", "about as many in a block: 4, 16, 64, 256, ...",
+             IntegerValue{[](S& s) -> int& { return s.hierarchy.block_surfels; }, 256, 1, 65536}},
 
     SceneKey{"capture", "views", "views",
              "spread evenly over the bounding sphere, that per-surfel weights are captured from",

@@ -43,6 +43,7 @@ struct SceneSettings {
   int width = 0, height = 0;
   Splatting splatting;
   Capture capture;
+  Hierarchy hierarchy;
   double depth_offset = 0;  // 0: the average spacing
 };
 

@@ -32,7 +32,9 @@ TEST(Scene, EmptyFileIsThePlaneOfFigure11) {
   EXPECT_EQ(scene.splatting.gamma, 0.73);
   EXPECT_EQ(scene.splatting.depth_offset, 1) << "the spacing of the plane";
   EXPECT_TRUE(scene.splatting.circular_cutoff);
-  EXPECT_EQ(scene.splatting.vertex_memory, VertexMemory::video);
+  EXPECT_EQ(scene.splatting.vertex_memory, VertexMemory::automatic);
+  EXPECT_EQ(scene.splatting.faces, Faces::both);
+  EXPECT_EQ(scene.hierarchy.culling, Culling::none);
 }
 
 TEST(Scene, PlaneIsCentredWithSquaresOfTwoColours) {
@@ -82,6 +84,11 @@ sigma = 0.75
 circular_cutoff = false
 texture_length = 200
 vertex_memory = "agp"
+video_megabytes = 12.5
+faces = "front"
+[hierarchy]
+culling = "off"
+block_surfels = 64
 [capture]
 views = 5
 frame_size = 100
@@ -109,6 +116,10 @@ box_max = [1, 2, 3]
   EXPECT_FALSE(s.splatting.circular_cutoff);
   EXPECT_EQ(s.splatting.texture_length, 200);
   EXPECT_EQ(s.splatting.vertex_memory, VertexMemory::agp);
+  EXPECT_EQ(s.splatting.video_megabytes, 12.5);
+  EXPECT_EQ(s.splatting.faces, Faces::front);
+  EXPECT_EQ(s.hierarchy.culling, Culling::off);
+  EXPECT_EQ(s.hierarchy.block_surfels, 64);
   EXPECT_EQ(s.capture.views, 5);
   EXPECT_EQ(s.capture.frame_size, 100);
   EXPECT_FALSE(s.capture.corner_weights);
@@ -125,9 +136,9 @@ TEST(Scene, ErrorsNameLineAndExpectation) {
             "s.toml:2: frame.width is 1.5, expected a whole number from 1 to 4096");
   EXPECT_EQ(error_of("[frame]\nwidht = 5\n"),
             "s.toml:2: unknown key \"widht\" in [frame], expected one of: width, height");
-  EXPECT_EQ(
-      error_of("[cmaera]\n"),
-      "s.toml:1: unknown table \"cmaera\", expected one of: surfels, camera, frame, splatting, capture");
+  EXPECT_EQ(error_of("[cmaera]\n"),
+            "s.toml:1: unknown table \"cmaera\", expected one of: surfels, camera, frame, splatting, "
+            "hierarchy, capture");
   EXPECT_EQ(error_of("camera = 3\n"), "s.toml:1: \"camera\" is a value, expected a table [camera]");
   EXPECT_EQ(error_of("[splatting]\nalgorithm = \"EWA\"\n"),
             "s.toml:2: splatting.algorithm is 'EWA', expected one of \"no-ewa\", \"ewa-per-pixel\", "

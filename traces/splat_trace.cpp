@@ -13,18 +13,13 @@
 namespace splatscope::traces {
 namespace {
 
-constexpr std::uint32_t kCorners = 4;           // of a surfel's quad
-constexpr std::uint32_t kIndices = 6;           // two triangles
-constexpr std::uint32_t kSurfelsADraw = 16384;  // as many quads as 16-bit indices reach
+constexpr std::uint32_t kCorners = 4;  // of a surfel's quad
+constexpr std::uint32_t kIndices = 6;  // two triangles
 
-MemoryPlace place_of(const Splatting& settings) {
-  return settings.vertex_memory == VertexMemory::agp ? MemoryPlace::agp : MemoryPlace::video;
-}
-
-Buffer vertex_buffer(std::span<const kernels::VertexField> fields, std::span<const Surfel> surfels,
-                     std::span<const VertexWeights> weights, const Splatting& settings) {
+Buffer vertex_buffer(std::span<const kernels::VertexField> fields, const SurfelBuffer& from,
+                     const Splatting& settings) {
+  const auto& [surfels, weights] = from;
   Buffer buffer;
-  buffer.place = place_of(settings);
   const std::size_t bytes = kernels::vertex_bytes(fields);
   buffer.bytes.resize(surfels.size() * kCorners * bytes);
   std::byte* out = buffer.bytes.data();
@@ -41,10 +36,9 @@ Buffer vertex_buffer(std::span<const kernels::VertexField> fields, std::span<con
   return buffer;
 }
 
-Buffer quad_indices(std::size_t quads, MemoryPlace place) {
+Buffer quad_indices(std::size_t quads) {
   constexpr std::uint16_t order[kIndices] = {0, 1, 2, 0, 2, 3};
   Buffer buffer;
-  buffer.place = place;
   buffer.bytes.resize(quads * kIndices * sizeof(std::uint16_t));
   for (std::size_t i = 0; i < quads * kIndices; ++i) {
     const auto index = static_cast<std::uint16_t>(i / kIndices * kCorners + order[i % kIndices]);
@@ -56,29 +50,71 @@ Buffer quad_indices(std::size_t quads, MemoryPlace place) {
 // Along camera z the depth image moves as if the eye stood z_t further back; the program's own offset is then
 // 0.
 std::vector<Vec4> constants_of(const kernels::SplatProgram& program, kernels::View view,
-                               const Splatting& settings) {
+                               const Splatting& settings, double depth_offset) {
   const bool visibility =
       std::ranges::count(kernels::visibility_programs(), program.file, &kernels::SplatProgram::file) > 0;
-  double along_ray = settings.depth_offset;
   if (visibility && settings.depth_offset_scheme == DepthOffsetScheme::camera_z) {
-    view.object_to_camera[3].z += std::exchange(along_ray, 0);
+    view.object_to_camera[3].z += std::exchange(depth_offset, 0);
   }
-  return program.constants(view, settings.cutoff, along_ray);
+  return program.constants(view, settings.cutoff, depth_offset);
 }
 
-// The draws of a pass: `program`, with its attributes and constants, for all surfels, in as many draws as
-// 16-bit indices make of them.
-void append_draws(Draw draw, const kernels::SplatProgram& program, const kernels::View& view,
-                  const Splatting& settings, std::size_t surfels, Trace& trace) {
-  draw.vertex_stride = kernels::vertex_bytes(program.fields);
-  draw.attributes = kernels::attributes_of(program.fields);
-  draw.constants = constants_of(program, view, settings);
-  for (std::size_t first = 0; first < surfels; first += kSurfelsADraw) {
-    draw.base_vertex = static_cast<std::uint32_t>(first * kCorners);
-    draw.index_count =
-        static_cast<std::uint32_t>(std::min<std::size_t>(kSurfelsADraw, surfels - first) * kIndices);
+// In the order in which they are to share the card's memory.
+void place_buffers(const Splatting& settings, std::vector<Buffer>& buffers) {
+  constexpr double kMegabyte = 1 << 20;
+  double left = settings.video_megabytes * kMegabyte;
+  for (Buffer& buffer : buffers) {
+    const auto bytes = static_cast<double>(buffer.bytes.size());
+    const bool video = settings.vertex_memory == VertexMemory::automatic
+                           ? bytes <= left
+                           : settings.vertex_memory == VertexMemory::video;
+    buffer.place = video ? MemoryPlace::video : MemoryPlace::agp;
+    if (video) left -= bytes;
+  }
+}
+
+// One of the two passes: its program, its state, and which buffer it draws instead of a SurfelBuffer.
+struct RecordedPass {
+  const kernels::SplatProgram& program;
+  Draw draw;
+  std::vector<std::uint32_t> vertex_buffers;
+
+  void append(const DrawnRange& range, const kernels::View& view, const Splatting& settings, Trace& trace) {
+    draw.vertex_buffer = vertex_buffers[range.buffer];
+    draw.constants = constants_of(program, view, settings, range.depth_offset);
+    draw.base_vertex = range.first * kCorners;
+    draw.index_count = range.count * kIndices;
     trace.commands.emplace_back(draw);
   }
+};
+
+RecordedPass make_pass(const kernels::SplatProgram& program, std::uint32_t vertex_program,
+                       const Splatting& settings) {
+  RecordedPass pass{program, {}, {}};
+  pass.draw.vertex_program = vertex_program;
+  pass.draw.vertex_stride = kernels::vertex_bytes(program.fields);
+  pass.draw.attributes = kernels::attributes_of(program.fields);
+  if (settings.faces == Faces::front) pass.draw.state.cull = CullMode::counter_clockwise;
+  return pass;
+}
+
+// Fills the trace's buffers. Passes with the same vertices share them.
+void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& settings, RecordedPass& visibility,
+                 RecordedPass& splats, Trace& trace) {
+  std::size_t most = 0;
+  for (const SurfelBuffer& buffer : buffers) most = std::max(most, buffer.surfels.size());
+  trace.buffers.push_back(quad_indices(std::min(most, kSurfelsADraw)));
+  const bool shared = std::ranges::equal(splats.program.fields, visibility.program.fields);
+  const auto add = [&](RecordedPass& pass, const SurfelBuffer& buffer) {
+    pass.vertex_buffers.push_back(static_cast<std::uint32_t>(trace.buffers.size()));
+    trace.buffers.push_back(vertex_buffer(pass.program.fields, buffer, settings));
+  };
+  for (const SurfelBuffer& buffer : buffers) {
+    add(visibility, buffer);
+    if (!shared) add(splats, buffer);
+  }
+  if (shared) splats.vertex_buffers = visibility.vertex_buffers;
+  place_buffers(settings, trace.buffers);
 }
 
 }  // namespace
@@ -114,47 +150,60 @@ int texture_length(const Splatting& settings) {
   return settings.texture_length > 0 ? settings.texture_length : kernels::optimal_length(settings.cutoff);
 }
 
-Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, const Splatting& settings,
-                  const SplatPass& pass) {
+Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::vector<DrawnRange>> frames,
+                  const kernels::View& view, const Splatting& settings, const SplatPass& pass) {
   Trace trace;
   trace.width = static_cast<std::uint32_t>(view.width);
   trace.height = static_cast<std::uint32_t>(view.height);
-  trace.commands.emplace_back(Clear{});
-  if (surfels.empty()) return trace;
-
-  const auto at = [](auto programs, int place) { return programs[static_cast<std::size_t>(place)]; };
-  const kernels::SplatProgram visibility = at(kernels::visibility_programs(), settings.visibility_program);
-  const kernels::SplatProgram splats =
-      pass.prefilter ? at(kernels::ewa_programs(), settings.ewa_program) : kernels::plain_program();
-  trace.buffers.push_back(
-      quad_indices(std::min<std::size_t>(surfels.size(), kSurfelsADraw), place_of(settings)));
-  trace.buffers.push_back(vertex_buffer(visibility.fields, surfels, pass.weights, settings));
-  // Passes with the same vertices share them.
-  if (!std::ranges::equal(splats.fields, visibility.fields)) {
-    trace.buffers.push_back(vertex_buffer(splats.fields, surfels, pass.weights, settings));
+  if (std::ranges::all_of(buffers, [](const SurfelBuffer& buffer) { return buffer.surfels.empty(); })) {
+    trace.commands.emplace_back(Clear{});
+    return trace;
   }
+
+  const auto at = [](auto programs, int place) -> decltype(auto) {
+    return programs[static_cast<std::size_t>(place)];
+  };
+  RecordedPass visibility =
+      make_pass(at(kernels::visibility_programs(), settings.visibility_program), 0, settings);
+  visibility.draw.state.color_write = false;
+
+  RecordedPass splats =
+      make_pass(pass.prefilter ? at(kernels::ewa_programs(), settings.ewa_program) : kernels::plain_program(),
+                1, settings);
+  splats.draw.pixel_program = 2;
+  splats.draw.texture = 0;
+  DrawState& state = splats.draw.state;
+  state.depth_write = false;
+  state.blend = true;
+  state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
+  state.destination_factor = BlendFactor::one;
+
+  add_buffers(buffers, settings, visibility, splats, trace);
   const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
   trace.textures.push_back(kernels::alpha_texture(settings.cutoff, texture_length(settings), shape));
-  trace.programs = {kernels::shader_text(visibility.file), kernels::shader_text(splats.file),
+  trace.programs = {kernels::shader_text(visibility.program.file), kernels::shader_text(splats.program.file),
                     kernels::shader_text(pass.sum_weights ? kernels::kWeightedSplatPixelProgram
                                                           : kernels::kSplatPixelProgram)};
 
-  Draw draw;
-  draw.vertex_program = 0;
-  draw.index_buffer = 0;
-  draw.vertex_buffer = 1;
-  draw.state.color_write = false;
-  append_draws(draw, visibility, view, settings, surfels.size(), trace);
-
-  draw.vertex_program = 1;
-  draw.vertex_buffer = static_cast<std::uint32_t>(trace.buffers.size() - 1);
-  draw.pixel_program = 2;
-  draw.texture = 0;
-  draw.state = {.depth_test = true, .depth_write = false, .color_write = true, .blend = true};
-  draw.state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
-  draw.state.destination_factor = BlendFactor::one;
-  append_draws(draw, splats, view, settings, surfels.size(), trace);
+  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+    if (frame > 0) trace.commands.emplace_back(Present{});
+    trace.commands.emplace_back(Clear{});
+    for (RecordedPass* recorded : {&visibility, &splats})
+      for (const DrawnRange& range : frames[frame]) recorded->append(range, view, settings, trace);
+    if (pass.normalize_on_host) trace.commands.emplace_back(NormalizeOnHost{});
+  }
   return trace;
+}
+
+Trace splat_trace(const SurfelBuffer& surfels, const kernels::View& view, const Splatting& settings,
+                  const SplatPass& pass) {
+  std::vector<DrawnRange> ranges;
+  for (std::size_t first = 0; first < surfels.surfels.size(); first += kSurfelsADraw) {
+    const std::size_t count = std::min(kSurfelsADraw, surfels.surfels.size() - first);
+    ranges.push_back(
+        {0, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), settings.depth_offset});
+  }
+  return splat_trace({&surfels, 1}, {&ranges, 1}, view, settings, pass);
 }
 
 std::vector<Command> seen_from(const kernels::View& view, const Splatting& settings, const Trace& trace) {
@@ -163,7 +212,7 @@ std::vector<Command> seen_from(const kernels::View& view, const Splatting& setti
     if (auto* draw = std::get_if<Draw>(&command)) {
       const kernels::SplatProgram& program =
           kernels::splat_program(trace.programs[draw->vertex_program].name);
-      draw->constants = constants_of(program, view, settings);
+      draw->constants = constants_of(program, view, settings, settings.depth_offset);
     }
   }
   return commands;

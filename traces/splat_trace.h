@@ -28,9 +28,26 @@ int texture_length(const Splatting& settings);
 
 // How the second pass splats.
 struct SplatPass {
-  std::span<const VertexWeights> weights;  // of each surfel
-  bool prefilter = true;                   // EWA; false: the reconstruction filter alone
+  bool prefilter = true;     // EWA; false: the reconstruction filter alone
   bool sum_weights = false;  // true: the alpha channel sums the weights; false: it is left to the blend unit
+  bool normalize_on_host = false;  // each frame, after its splats
+};
+
+// At most this many surfels in a draw: as many quads as 16-bit indices reach.
+inline constexpr std::size_t kSurfelsADraw = 16384;
+
+// Surfels that share a vertex buffer, or one for each pass where the passes' vertices differ.
+struct SurfelBuffer {
+  std::span<const Surfel> surfels;
+  std::span<const VertexWeights> weights;  // of each
+};
+
+// Some of a buffer's surfels, to be drawn in one call of each pass.
+struct DrawnRange {
+  std::uint32_t buffer = 0;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;  // at most kSurfelsADraw
+  double depth_offset = 0;  // z_t, object units
 };
 
 // The scene's camera and frame as the programs need them.
@@ -42,10 +59,15 @@ struct Tangents {
 };
 Tangents tangents(const Surfel& surfel);
 
-// Buffers, programs and draws of the two passes of Ren 2002, section 5, over all surfels: clear, visibility,
-// splats. Four vertices a surfel in `settings.vertex_memory`, six 16-bit indices a surfel shared by all
-// draws.
-Trace splat_trace(std::span<const Surfel> surfels, const kernels::View& view, const Splatting& settings,
+// Buffers, programs and draws of the two passes of Ren 2002, section 5: for each of `frames` clear,
+// visibility and splats of its ranges, in their order. Four vertices a surfel, six 16-bit indices a surfel
+// shared by all draws. Buffers lie where `settings.vertex_memory` says: `automatic` puts them into video
+// memory in turn until `settings.video_megabytes` are full.
+Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::vector<DrawnRange>> frames,
+                  const kernels::View& view, const Splatting& settings, const SplatPass& pass);
+
+// The same for one frame of all surfels, in one buffer.
+Trace splat_trace(const SurfelBuffer& surfels, const kernels::View& view, const Splatting& settings,
                   const SplatPass& pass);
 
 // The commands of a splat trace as they are for another view of the same size.

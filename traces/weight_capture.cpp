@@ -82,7 +82,8 @@ float median(std::span<float> values) {
 class CapturedViews {
  public:
   CapturedViews(std::span<const Surfel> surfels, const Splatting& splatting, const Capture& capture,
-                const NumberFormats& formats, const std::function<void(double)>& progress) {
+                const NumberFormats& formats, const std::function<void(double)>& progress)
+      : both_faces_(splatting.faces != Faces::front) {
     const Sphere sphere = bounding_sphere(surfels, splatting);
     RenderOptions options;
     options.formats = formats;
@@ -92,8 +93,8 @@ class CapturedViews {
     }
     frames_.resize(views_.size(), splatscope::Frame(0, 0, formats));
     const std::vector<VertexWeights> unnormalized(surfels.size(), equal_weights(splatting.gamma));
-    const Trace trace = splat_trace(surfels, views_.front().view, splatting,
-                                    {.weights = unnormalized, .prefilter = false, .sum_weights = true});
+    const Trace trace = splat_trace({surfels, unnormalized}, views_.front().view, splatting,
+                                    {.prefilter = false, .sum_weights = true});
     std::mutex mutex;
     std::size_t done = 0;
     tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
@@ -109,7 +110,7 @@ class CapturedViews {
     scratch.clear();
     for (std::size_t i = 0; i < views_.size(); ++i) {
       const double cosine = glm::dot(normal, glm::normalize(views_[i].eye - point));
-      if (std::abs(cosine) < kSmallestCosine) continue;
+      if ((both_faces_ ? std::abs(cosine) : cosine) < kSmallestCosine) continue;
       const float sum = seen_sum(views_[i].view, frames_[i], point);
       if (sum > 0) scratch.push_back(sum);
     }
@@ -130,6 +131,7 @@ class CapturedViews {
     return depth <= frame.depth_value(pixel) ? frame.color(pixel)[3] : 0;
   }
 
+  bool both_faces_;  // are drawn; else a view from behind shows what lies behind the point
   std::vector<CaptureView> views_;
   std::vector<splatscope::Frame> frames_;
 };

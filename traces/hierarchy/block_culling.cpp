@@ -1,0 +1,143 @@
+#include "traces/hierarchy/block_culling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "model/primitive/primitive.h"
+
+namespace splatscope::traces {
+namespace {
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+// Facing is decided on the rasteriser's grid, of 1/16 pixel on both machines. A quad whose sides are `size`
+// pixels long when it faces the eye has twice a triangle's area size^2 cos. Rounding moves each corner by
+// 1/32 at most in x and y, the area by that times the sum of the edges in the taxicab norm, 4 size, and by
+// 6/32^2: only beyond this cosine the quad cannot turn round. The rest is for the rounding of the vertex
+// programs.
+double turning_cosine(double size) {
+  constexpr double kStep = 1.0 / 32;
+  return 0.01 + (4 * kStep + 6 * kStep * kStep / size) / size;
+}
+
+// Of what Eq. 12 and 14 give: for the other vertex programs, whose parallelograms about the same ellipse
+// differ by less, and for rounding.
+constexpr double kReachMargin = 1.5;
+// An EWA splat whose low-pass filter is longer than this part of its distance, because it is seen nearly
+// edge-on, has no affine map that says where it goes.
+constexpr double kLongest = 0.25;
+
+}  // namespace
+
+// A box lies in a half-space if its eight corners do.
+struct BlockCulling::Placed {
+  std::array<glm::dvec3, 8> corners;                    // camera space
+  double nearest = kUnbounded, furthest = -kUnbounded;  // camera z
+  // The least cosine between the normal and the viewing ray where all surfels face away (toward the eye); not
+  // positive where some may not.
+  double away = -1, toward = -1;
+  // Of the quads of both passes from their surfels' centres; and its part along camera z.
+  double reach = kUnbounded, depth_reach = kUnbounded;
+};
+
+BlockCulling::BlockCulling(const kernels::View& view, const Splatting& settings)
+    : views_{view}, settings_(settings) {
+  if (settings.depth_offset_scheme == DepthOffsetScheme::camera_z) {  // as splat_trace moves the eye
+    views_.push_back(view);
+    views_.back().object_to_camera[3].z += settings.depth_offset;
+  }
+  const double w = 0.5 * view.width, h = 0.5 * view.height;
+  sides_ = {glm::normalize(glm::dvec3(view.eta, 0, -w)), glm::normalize(glm::dvec3(-view.eta, 0, -w)),
+            glm::normalize(glm::dvec3(0, view.eta, -h)), glm::normalize(glm::dvec3(0, -view.eta, -h))};
+}
+
+BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View& view) const {
+  Placed placed;
+  double distance = 0;  // largest
+  for (std::size_t i = 0; i < placed.corners.size(); ++i) {
+    const glm::dvec3 corner =
+        view.camera_space({(i & 1 ? block.high : block.low).x, (i & 2 ? block.high : block.low).y,
+                           (i & 4 ? block.high : block.low).z});
+    placed.corners[i] = corner;
+    placed.nearest = std::min(placed.nearest, corner.z);
+    placed.furthest = std::max(placed.furthest, corner.z);
+    distance = std::max(distance, glm::length(corner));
+  }
+  const glm::dvec3 axis = view.camera_direction(block.axis);
+  // A cylinder about the axis holds the centres too.
+  const double middle = view.camera_space(block.middle()).z;
+  const double across = block.width * std::sqrt(std::max(0.0, 1 - axis.z * axis.z));
+  const auto [least, most] = std::minmax({axis.z * block.bottom, axis.z * block.top});
+  placed.nearest = std::max(placed.nearest, middle + least - across);
+  placed.furthest = std::min(placed.furthest, middle + most + across);
+  // n.(o - e) >= n.(apex - e), and n is within `spread` of the axis.
+  const auto least_cosine = [&](const glm::dvec3& apex, double sign) {
+    const glm::dvec3 ray = view.camera_space(apex);
+    const double length = glm::length(ray);
+    if (!(length > 0)) return -1.0;
+    const double angle = std::acos(std::clamp(sign * glm::dot(axis, ray) / length, -1.0, 1.0)) + block.spread;
+    return angle < 0.5 * std::numbers::pi ? std::cos(angle) * std::min(1.0, length / distance) : -1.0;
+  };
+  placed.away = least_cosine(block.behind, 1);
+  placed.toward = least_cosine(block.before, -1);
+
+  // Largest axis of the splat, by the least singular value of J (Ren 2002, section 5.2), which is at least
+  // eta/z cos; the programs hold z at the near plane behind it.
+  const double cosine = std::max(placed.away, placed.toward);
+  if (!(cosine > 0) || (placed.nearest < view.near_plane && placed.furthest > -view.near_plane))
+    return placed;
+  const double z = std::max(placed.furthest, view.near_plane);
+  const double low_pass = z / (view.eta * cosine);
+  const double corner = 2 * std::sqrt(settings_.cutoff);  // sqrt 2 of the quad's half side, sqrt(2c)
+  if (corner * low_pass > kLongest * z) return placed;
+  const double splat = corner * std::hypot(settings_.sigma * block.greatest_radius, low_pass);
+  placed.reach = kReachMargin * std::max(splat, std::numbers::sqrt2 * block.greatest_radius);
+  const double from_z = std::acos(std::min(std::abs(axis.z), 1.0)) + block.spread;  // of normals
+  placed.depth_reach = placed.reach * (from_z < 0.5 * std::numbers::pi ? std::sin(from_z) : 1);
+  return placed;
+}
+
+// Culled where no pass can show it.
+BlockFate BlockCulling::fate(const Block& block) const {
+  BlockFate all = BlockFate::drawn;
+  for (const kernels::View& view : views_) {
+    all = fate(block, view);
+    if (all == BlockFate::drawn) break;
+  }
+  return all;
+}
+
+BlockFate BlockCulling::fate(const Block& block, const kernels::View& view) const {
+  const Placed placed = place(block, view);
+  if (is_outside(placed, view)) return BlockFate::outside_frustum;
+  if (faces_away(block, placed, view)) return BlockFate::facing_away;
+  return BlockFate::drawn;
+}
+
+bool BlockCulling::is_outside(const Placed& placed, const kernels::View& view) const {
+  // The visibility pass moves its quads by z_t away from the eye.
+  if (placed.furthest + placed.depth_reach + settings_.depth_offset < view.near_plane) return true;
+  if (placed.nearest - placed.depth_reach > view.far_plane) return true;
+  return std::ranges::any_of(sides_, [&](const glm::dvec3& side) {
+    return std::ranges::all_of(
+        placed.corners, [&](const glm::dvec3& corner) { return glm::dot(side, corner) > placed.reach; });
+  });
+}
+
+bool BlockCulling::faces_away(const Block& block, const Placed& placed, const kernels::View& view) const {
+  if (settings_.faces != Faces::front) return false;
+  // Clipping cuts triangles into slivers, whose winding on the grid is anybody's guess.
+  const double nearest = placed.nearest - placed.depth_reach;
+  const double furthest = placed.furthest + placed.depth_reach + settings_.depth_offset;
+  if (nearest < view.near_plane || furthest > view.far_plane) return false;
+  const double guard = (primitive::kGuardBand - view.width - view.height) * nearest / view.eta;
+  for (const glm::dvec3& corner : placed.corners)
+    if (std::max(std::abs(corner.x), std::abs(corner.y)) + placed.reach > guard) return false;
+  const double half_side = std::min(1.0, std::sqrt(2 * settings_.cutoff) * settings_.sigma);
+  return placed.away > turning_cosine(2 * half_side * block.least_radius * view.eta / furthest);
+}
+
+}  // namespace splatscope::traces

@@ -1,0 +1,153 @@
+#include "traces/hierarchy/block_culling.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <random>
+
+#include "model/render.h"
+#include "traces/recorder.h"
+#include "traces/scene.h"
+
+namespace splatscope::traces {
+namespace {
+
+Scene small_model(std::string_view generator) {
+  return parse_scene(fmt::format("[surfels]\ngenerator = \"{}\"\ncount = 4000\n"
+                                 "[frame]\nwidth = 80\nheight = 64\n[hierarchy]\nblock_surfels = 16\n",
+                                 generator),
+                     "model.toml");
+}
+
+CapturedWeights equal(const Scene& scene) {
+  CapturedWeights weights;
+  weights.weights.resize(scene.surfels.size(), equal_weights(scene.splatting.gamma));
+  return weights;
+}
+
+// Anywhere about or inside a model of radius 1 about the origin, looking anywhere; the near plane may cut it.
+Camera any_camera(std::mt19937& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto direction = [&] {
+    std::normal_distribution<double> any;
+    return glm::normalize(glm::dvec3(any(random), any(random), any(random)));
+  };
+  Camera camera;
+  camera.eye = between(0, 2.5) * direction();
+  camera.target = camera.eye + direction();
+  if (between(0, 1) < 0.7) camera.target = between(0, 0.8) * direction();
+  camera.up = direction();
+  camera.fov_y_degrees = between(10, 120);
+  camera.near = std::exp2(between(-10, 0));
+  camera.far = camera.near + between(0.5, 4);
+  return camera;
+}
+
+struct Drawn {
+  splatscope::Frame frame;
+  BlockCounts blocks;
+};
+
+Drawn drawn(Scene scene, const CapturedWeights& weights, Culling culling) {
+  scene.hierarchy.culling = culling;
+  const Recording recording = record(scene, weights);
+  RenderOptions options;
+  options.record_work = false;
+  return {render(recording.trace, options).frame, recording.counts.blocks};
+}
+
+// Depths too: what is culled would have been nowhere.
+void expect_same_pictures(const char* generator, const char* settings_name, auto&& change) {
+  Scene scene = small_model(generator);
+  change(scene);
+  const CapturedWeights weights = equal(scene);
+  const unsigned seed = std::random_device{}();
+  std::mt19937 random(seed);
+  BlockCounts total;
+  for (int i = 0; i < 30; ++i) {
+    scene.camera = any_camera(random);
+    const Drawn all = drawn(scene, weights, Culling::off), some = drawn(scene, weights, Culling::blocks);
+    ASSERT_EQ(all.frame, some.frame) << generator << ", " << settings_name << ", view " << i << ", seed "
+                                     << seed;
+    total.outside_frustum += some.blocks.outside_frustum;
+    total.facing_away += some.blocks.facing_away;
+    total.drawn += some.blocks.drawn;
+  }
+  // Or the test would say nothing. How many it is depends on the views.
+  const double blocks = static_cast<double>(total.drawn + total.outside_frustum + total.facing_away);
+  EXPECT_GT(static_cast<double>(total.outside_frustum), 0.05 * blocks) << "seed " << seed;
+  if (scene.splatting.faces == Faces::front) {
+    EXPECT_GT(static_cast<double>(total.facing_away), 0.01 * blocks) << "seed " << seed;
+  } else {
+    EXPECT_EQ(0u, total.facing_away);
+  }
+}
+
+TEST(BlockCulling, NeverChangesThePicture) {
+  for (const char* generator : {"sphere", "torus-knot", "salamander"})
+    expect_same_pictures(generator, "EWA", [](Scene&) {});
+}
+
+TEST(BlockCulling, NeverChangesThePictureWithoutPrefilter) {
+  expect_same_pictures("torus-knot", "no EWA", [](Scene& s) { s.splatting.algorithm = Algorithm::no_ewa; });
+}
+
+TEST(BlockCulling, NeverChangesThePictureOfOtherSettings) {
+  expect_same_pictures("torus-knot", "both faces", [](Scene& s) { s.splatting.faces = Faces::both; });
+  expect_same_pictures("salamander", "depth offset along z", [](Scene& s) {
+    s.splatting.depth_offset_scheme = DepthOffsetScheme::camera_z;
+    s.splatting.depth_offset *= 4;
+  });
+  expect_same_pictures("salamander", "wide splats", [](Scene& s) {
+    s.splatting.cutoff = 3;
+    s.splatting.sigma = 2;
+  });
+  for (int program = 1; program <= 3; ++program) {
+    expect_same_pictures("torus-knot", "another vertex program",
+                         [&](Scene& s) { s.splatting.ewa_program = program; });
+  }
+}
+
+// A block of one surfel at `position`, a unit in radius.
+Block block_of(const glm::vec3& position, const glm::vec3& normal) {
+  const Surfel surfel{position, normal, 1, {}};
+  return build_ldc_tree({&surfel, 1}, 256).levels.front().blocks.front();
+}
+
+// 90 degrees of view, 100 pixels each way: an eta of 50.
+BlockFate fate_of(const glm::vec3& position, const glm::vec3& normal, Faces faces = Faces::front) {
+  Splatting splatting;
+  splatting.cutoff = 1;
+  splatting.sigma = 1;
+  splatting.depth_offset = 1;
+  splatting.faces = faces;
+  const kernels::View view = kernels::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 100, 100, 1, 1000);
+  return BlockCulling(view, splatting).fate(block_of(position, normal));
+}
+
+TEST(BlockCulling, KnowsWhatFacesAway) {
+  EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {0, 0, -1}));
+  EXPECT_EQ(BlockFate::facing_away, fate_of({0, 0, 20}, {0, 0, 1}));
+  EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {0, 0, 1}, Faces::both));
+  // The ray counts, not the camera's direction.
+  EXPECT_EQ(BlockFate::facing_away, fate_of({15, 0, 20}, {1, 0, 0}));
+  EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {1, 0, 0})) << "edge-on";
+  EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 1.5f}, {0.6f, 0, 0.8f})) << "cut by the near plane";
+}
+
+TEST(BlockCulling, KnowsWhatIsOutside) {
+  EXPECT_EQ(BlockFate::outside_frustum, fate_of({0, 0, -20}, {0, 0, 1}));
+  EXPECT_EQ(BlockFate::outside_frustum, fate_of({0, 0, 1010}, {0, 0, -1}));
+  for (const glm::vec2 side : {glm::vec2(1, 0), glm::vec2(-1, 0), glm::vec2(0, 1), glm::vec2(0, -1)}) {
+    EXPECT_EQ(BlockFate::outside_frustum, fate_of({26.0f * side, 20}, {0, 0, -1}));
+    EXPECT_EQ(BlockFate::drawn, fate_of({20.5f * side, 20}, {0, 0, -1})) << "its splat reaches in";
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::traces
