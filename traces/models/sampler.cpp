@@ -7,8 +7,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <queue>
-#include <unordered_map>
 
+#include "traces/models/relax.h"
 #include "traces/models/triangle.h"
 #include "traces/models/voxels.h"
 
@@ -16,7 +16,7 @@ namespace splatscope::traces {
 namespace {
 
 constexpr std::size_t kPlaces = 4;  // tried for each point
-constexpr std::uint32_t kNone = ~0u;
+constexpr std::uint32_t kNone = VoxelIndex::kNone;
 
 // SplitMix64: neighbouring numbers give unrelated bits.
 std::uint64_t scramble(std::uint64_t x) {
@@ -35,33 +35,17 @@ double distance2(const glm::dvec3& a, const glm::dvec3& b) {
   return d.x + d.y + d.z;
 }
 
-// The point of the cell's triangles closest to `place`; on ties the first.
-MeshSample closest(const Mesh& mesh, const SampledCell& cell, const glm::dvec3& place) {
-  MeshSample best;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t number : cell.triangles) {
-    const Triangle t = triangle_of(mesh, number);
-    const glm::dvec3 weights = closest_point(t, place);
-    const glm::dvec3 point = point_at(t, weights);
-    const double distance = distance2(point, place);
-    if (!(distance < least)) continue;
-    least = distance;
-    best = {glm::vec3(point), number, weights};
-  }
-  return best;
-}
-
 // Projection onto the surface inside the cell. A triangle goes on beyond its cell, and the closest point may
 // lie there; going back and forth between two convex bodies that meet leads to where they do.
 MeshSample project(const Mesh& mesh, const SampledCell& cell, const glm::dvec3& place) {
   constexpr int kTries = 4;
   const glm::dvec3 half = 0.5 * cell.dimensions;
-  MeshSample found = closest(mesh, cell, place);
+  MeshSample found = closest_sample(mesh, cell.triangles, place);
   for (int i = 1; i < kTries; ++i) {
     const glm::dvec3 point(found.position);
     const glm::dvec3 inside = glm::clamp(point, cell.center - half, cell.center + half);
     if (inside == point) break;
-    found = closest(mesh, cell, inside);
+    found = closest_sample(mesh, cell.triangles, inside);
   }
   return found;
 }
@@ -69,12 +53,13 @@ MeshSample project(const Mesh& mesh, const SampledCell& cell, const glm::dvec3& 
 class Sampler {
  public:
   Sampler(const Mesh& mesh, const SamplerOptions& options)
-      : mesh_(mesh), options_(options), voxels_(voxelize(mesh, options.depth, options.count)) {
+      : mesh_(mesh),
+        options_(options),
+        voxels_(voxelize(mesh, options.depth, options.count)),
+        index_(voxels_) {
     const std::size_t cells = voxels_.cells.size();
     states_.resize(cells);
     places_.resize(cells * kPlaces);
-    number_of_.reserve(cells);
-    for (std::uint32_t i = 0; i < cells; ++i) number_of_.emplace(key(voxels_.cells[i]), i);
     sampled_.resize(voxels_.triangles.size());
     tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t i) {
       states_[i].unsampled = static_cast<std::uint32_t>(voxels_.triangles_of(i).size());
@@ -99,7 +84,9 @@ class Sampler {
       take_point(cell);
       heap.push(entry(cell));
     }
-    return in_order();
+    std::vector<MeshSample> samples = in_order();
+    relax(mesh_, voxels_, index_, options_.relaxations, samples);
+    return samples;
   }
 
  private:
@@ -118,10 +105,6 @@ class Sampler {
       return tie != other.tie ? tie < other.tie : cell < other.cell;
     }
   };
-
-  static std::uint64_t key(const glm::uvec3& place) {
-    return place.x | std::uint64_t{place.y} << 21 | std::uint64_t{place.z} << 42;
-  }
 
   SampledCell seen(std::size_t i) const {
     return {voxels_.center(i),    voxels_.size,       voxels_.triangles_of(i),
@@ -156,9 +139,8 @@ class Sampler {
       for (unsigned y = 0; y < 3; ++y) {
         for (unsigned x = 0; x < 3; ++x) {
           const glm::uvec3 place = at + glm::uvec3(x, y, z) - 1u;  // below 0 wraps to where no cell is
-          const auto found = number_of_.find(key(place & 0x1fffffu));
-          if (found != number_of_.end() && states_[found->second].last != kNone)
-            around[count++] = found->second;
+          const std::uint32_t found = index_.at(place);
+          if (found != kNone && states_[found].last != kNone) around[count++] = found;
         }
       }
     }
@@ -214,7 +196,7 @@ class Sampler {
   const Mesh& mesh_;
   const SamplerOptions& options_;
   Voxels voxels_;
-  std::unordered_map<std::uint64_t, std::uint32_t> number_of_;  // of the cell at a place
+  VoxelIndex index_;
   std::vector<State> states_;
   std::vector<char> sampled_;       // of voxels_.triangles
   std::vector<MeshSample> places_;  // kPlaces a cell, ready to be taken

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "traces/models/mesh.h"
+#include "traces/models/mesh_sample.h"
 
 // Priority-based stratified sampling of a mesh (hybrid scenes, section 3): points spread evenly, and exactly
 // as many as asked for.
@@ -36,23 +36,21 @@ double unsampled_triangles(const SampledCell& cell);
 // A sequence of low discrepancy, shifted at random from cell to cell.
 glm::dvec3 even_distribution(const SampledCell& cell, std::size_t index);
 
+inline constexpr int kRelaxations = 3;
+
 struct SamplerOptions {
   std::size_t count = 0;
   int depth = std::numeric_limits<int>::max();  // of the tree at most; it has at most `count` leaves anyway
   Priority priority = unsampled_triangles;
   Distribution distribution = even_distribution;
-};
-
-struct MeshSample {
-  glm::vec3 position{};
-  std::uint32_t triangle = 0;
-  glm::dvec3 weights{};  // barycentric
+  int relaxations = kRelaxations;  // rounds in which the points give way to each other (relax.h)
 };
 
 // Exactly `count` points, ordered by cells so that neighbours are near each other in memory. Of a few places
 // in the chosen cell, each projected to the closest point of the cell's triangles, the one furthest from the
-// points around is taken. Needs a mended mesh (mesh.h) with at least one triangle, or count 0. The same
-// result for any number of threads; `priority` and `distribution` may be called from several at once.
+// points around is taken; then the points give way to each other along the surface. Needs a mended mesh
+// (mesh.h) with at least one triangle, or count 0. The same result for any number of threads; `priority` and
+// `distribution` may be called from several at once.
 std::vector<MeshSample> sample(const Mesh& mesh, const SamplerOptions& options,
                                const std::function<void(double)>& progress = {});
 

@@ -91,6 +91,41 @@ TEST(Sampler, SpreadsPointsEvenly) {
   }
 }
 
+// How unevenly splats add up: the sums, at the points, of Gaussians as wide as half the distance to the
+// eighth neighbour of their centre; their standard deviation in units of the mean.
+double unevenness(const std::vector<MeshSample>& samples) {
+  const std::size_t count = samples.size();
+  std::vector<double> sums(count), squared(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::dvec3 to = glm::dvec3(samples[i].position) - glm::dvec3(samples[k].position);
+      squared[i] = glm::dot(to, to);
+    }
+    std::vector<double> sorted = squared;
+    std::nth_element(sorted.begin(), sorted.begin() + 8, sorted.end());
+    for (std::size_t i = 0; i < count; ++i) sums[i] += std::exp(-0.5 * squared[i] / (0.25 * sorted[8]));
+  }
+  double sum = 0, squares = 0;
+  for (const double at : sums) {
+    sum += at;
+    squares += at * at;
+  }
+  const double mean = sum / static_cast<double>(count);
+  return std::sqrt(squares / static_cast<double>(count) - mean * mean) / mean;
+}
+
+TEST(Sampler, RelaxationEvensTheSumsOfSplats) {
+  for (int cells : {3, 64}) {
+    const Mesh mesh = ball(cells);
+    SamplerOptions options;
+    options.count = 3000;
+    const double relaxed = unevenness(sample(mesh, options));
+    options.relaxations = 0;
+    const double before = unevenness(sample(mesh, options));
+    EXPECT_LT(relaxed, 0.5 * before) << cells << " cells; before: " << before;
+  }
+}
+
 TEST(Sampler, PriorityAndDistributionCanBeReplaced) {
   const Mesh mesh = ball(16);
   SamplerOptions options;

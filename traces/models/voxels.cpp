@@ -83,7 +83,23 @@ Voxels next_level(const Mesh& mesh, const Voxels& parents, int axis) {
   return children;
 }
 
+// 21 bits an axis: more than kMostHalvings; 0 - 1 has them all and names no cell.
+std::uint64_t key(const glm::uvec3& place) {
+  const glm::uvec3 bits = place & 0x1fffffu;
+  return bits.x | std::uint64_t{bits.y} << 21 | std::uint64_t{bits.z} << 42;
+}
+
 }  // namespace
+
+VoxelIndex::VoxelIndex(const Voxels& voxels) {
+  numbers_.reserve(voxels.cells.size());
+  for (std::uint32_t i = 0; i < voxels.cells.size(); ++i) numbers_.emplace(key(voxels.cells[i]), i);
+}
+
+std::uint32_t VoxelIndex::at(const glm::uvec3& place) const {
+  const auto found = numbers_.find(key(place));
+  return found == numbers_.end() ? kNone : found->second;
+}
 
 Triangle triangle_of(const Mesh& mesh, std::uint32_t triangle) {
   const auto& t = mesh.triangles[triangle];

@@ -4,6 +4,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "traces/models/mesh.h"
@@ -25,6 +26,20 @@ struct Voxels {
   std::span<const std::uint32_t> triangles_of(std::size_t cell) const {
     return std::span(triangles).subspan(first[cell], first[cell + 1] - first[cell]);
   }
+};
+
+// Finds leaves by their place.
+class VoxelIndex {
+ public:
+  static constexpr std::uint32_t kNone = ~0u;
+
+  explicit VoxelIndex(const Voxels& voxels);
+
+  // The number of the leaf there, or kNone. Places one outside of the grid hold none.
+  std::uint32_t at(const glm::uvec3& place) const;
+
+ private:
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
 };
 
 inline constexpr int kMostHalvings = 20;  // of each axis
