@@ -1,5 +1,10 @@
 #include "traces/recorder.h"
 
+#include <algorithm>
+#include <iterator>
+#include <ranges>
+
+#include "kernels/object_space_ewa/programs.h"
 #include "traces/splat_trace.h"
 
 namespace splatscope::traces {
@@ -10,6 +15,27 @@ SplatPass pass_of(Algorithm algorithm) {
   const bool per_pixel = algorithm == Algorithm::ewa_per_pixel;
   return {
       .prefilter = algorithm != Algorithm::no_ewa, .sum_weights = per_pixel, .normalize_on_host = per_pixel};
+}
+
+// Appends the last frame once more, normalised per pixel: progressive refinement (Ren 2002, section 8). The
+// vertices keep their captured weights: with them the sums stay near gamma, and the division takes out what
+// is left.
+void refine(Trace& trace) {
+  const auto program = static_cast<std::uint32_t>(trace.programs.size());
+  trace.programs.push_back(kernels::shader_text(kernels::kWeightedSplatPixelProgram));
+  const auto begin = std::ranges::find_if(trace.commands | std::views::reverse, [](const Command& command) {
+    return std::holds_alternative<Clear>(command);
+  });
+  std::vector<Command> frame(std::prev(begin.base()), trace.commands.end());
+  trace.commands.emplace_back(Present{});
+  for (Command& command : frame) {
+    if (auto* draw = std::get_if<Draw>(&command); draw && draw->pixel_program) {
+      draw->pixel_program = program;
+      draw->state.source_factor = BlendFactor::one;
+    }
+    trace.commands.push_back(std::move(command));
+  }
+  trace.commands.emplace_back(NormalizeOnHost{});
 }
 
 // Block by block of an LDC tree.
@@ -38,6 +64,7 @@ Recording record(const Scene& scene, const CapturedWeights& captured) {
   } else {
     out.trace = record_blocks(scene, captured.weights, out.counts);
   }
+  if (scene.splatting.refine) refine(out.trace);
   if (scene.splatting.algorithm != Algorithm::ewa_per_pixel) {
     out.counts.weights_captured = captured.captured;
     out.counts.weights_at_edges = captured.at_edges;

@@ -57,6 +57,34 @@ TEST(Recorder, EveryAlgorithmIsASoundTraceOfTwoPasses) {
   }
 }
 
+// Per surfel while the eye moves, per pixel when it rests.
+TEST(Recorder, RefinesAFramePerSurfelByOnePerPixel) {
+  Scene scene = small_plane(Algorithm::ewa_per_surfel);
+  const splatscope::Frame moving = render(record(scene, NumberFormats{}).trace, {}).frame;
+  scene.splatting.refine = true;
+  const Trace trace = record(scene, NumberFormats{}).trace;
+  EXPECT_NO_THROW(check_trace(trace, "recorded"));
+  std::vector<splatscope::Frame> frames;
+  render(trace, {}, {}, [&](const splatscope::Frame& frame) { frames.push_back(frame); });
+  ASSERT_EQ(2u, frames.size());
+
+  scene.splatting.refine = false;
+  scene.splatting.algorithm = Algorithm::ewa_per_pixel;
+  const splatscope::Frame still = render(record(scene, NumberFormats{}).trace, {}).frame;
+  double moved = 0, refined = 0;
+  for (std::size_t pixel = 0; pixel < frames[0].depth.size(); ++pixel) {
+    const auto shown = frames[0].color(pixel), then = frames[1].color(pixel), wanted = still.color(pixel);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(moving.color(pixel)[i], shown[i]);
+      moved += std::abs(shown[i] - wanted[i]);
+      refined += std::abs(then[i] - wanted[i]);
+    }
+  }
+  // The weights differ, and 8-bit sums with them.
+  EXPECT_LT(refined / static_cast<double>(3 * frames[0].depth.size()), 1.0 / 255);
+  EXPECT_LT(refined, 0.2 * moved) << "gamma is gone, and with it what is darker at the edges";
+}
+
 TEST(Recorder, DrawsInBatchesOfSixteenBitIndices) {
   Scene scene = small_plane(Algorithm::ewa_per_pixel);
   scene.surfels.resize(20000, scene.surfels.front());

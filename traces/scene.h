@@ -63,6 +63,7 @@ struct Splatting {
   double sigma = 0;  // standard deviation of the reconstruction filter, in units of a surfel's radius
   bool circular_cutoff = false;  // texels beyond the cutoff are 0; else the whole square is used
   int texture_length = 0;        // texels along an edge of the alpha texture; 0: Eq. 16's
+  bool refine = false;           // of ewa-per-surfel: a second frame, normalised per pixel (8)
   VertexMemory vertex_memory = VertexMemory::automatic;
   double video_megabytes = 0;  // what vertex and index buffers may take of the card's memory
   Faces faces = Faces::both;   // of a Scene, never automatic: surfels that face away may be dropped

@@ -171,6 +171,12 @@ SceneSettings parse_settings(std::string_view text, std::string_view file) {
     settings.camera_line = line(*camera);
   }
   if (is_plane(settings.surfels)) check_camera(settings, file);
+  const Splatting& splatting = settings.splatting;
+  if (splatting.refine && splatting.algorithm != Algorithm::ewa_per_surfel) {
+    throw UserError(file, 0,
+                    fmt::format("splatting.refine with algorithm \"{}\", expected \"ewa-per-surfel\"",
+                                name(splatting.algorithm)));
+  }
   return settings;
 }
 

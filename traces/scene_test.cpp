@@ -147,6 +147,8 @@ TEST(Scene, ErrorsNameLineAndExpectation) {
             "s.toml:2: splatting.gamma is nan, expected a number from 0 to 1");
   EXPECT_EQ(error_of("[splatting]\ncircular_cutoff = 1\n"),
             "s.toml:2: splatting.circular_cutoff is 1, expected true or false");
+  EXPECT_EQ(error_of("[splatting]\nrefine = true\nalgorithm = \"no-ewa\"\n"),
+            "s.toml: splatting.refine with algorithm \"no-ewa\", expected \"ewa-per-surfel\"");
   EXPECT_EQ(error_of("[camera]\neye = [1, 2]\n"),
             "s.toml:2: camera.eye is [ 1, 2 ], expected an array of three numbers from -1e+30 to 1e+30");
   EXPECT_EQ(error_of("[camera]\neye = [1, inf, 2]\n"),
