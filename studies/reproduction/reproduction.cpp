@@ -3,12 +3,14 @@
 #include <array>
 
 #include "studies/reproduction/table1.h"
+#include "studies/reproduction/table2.h"
 
 namespace splatscope::studies {
 
 std::span<const Study> reproductions() {
   static constexpr std::array kReproductions = {
       Study{"table1", "frame rates of the three algorithms on both machines", reproduce_table1},
+      Study{"table2", "frame rates of stand-ins for its four models on both machines", reproduce_table2},
       Study{"fig4", "the depth offset along camera z and along viewing rays, two surfaces",
             reproduce_figure4},
       Study{"fig5", "the two depth offsets on a model, and z_t from too small to too large",

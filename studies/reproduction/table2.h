@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/run.h"
+#include "studies/study.h"
+
+// Table 2 of Ren, Pfister, Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines. Its
+// models were never published: ours are stand-ins with as many points.
+namespace splatscope::studies {
+
+struct Table2Model {
+  std::string_view name;  // as in the paper, and the generator that stands in for it
+  std::size_t points;
+  struct {
+    int resolution;         // pixels: width and height
+    double radeon, ti4400;  // frames per second
+  } published[2];
+};
+std::span<const Table2Model> table2_models();
+
+struct Table2Row {
+  std::string model;
+  std::size_t points = 0;
+  std::size_t drawn = 0;  // points that culling left
+  int resolution = 0;     // pixels
+  std::string machine;
+  double published_fps = 0;
+  double simulated_fps = 0;
+  std::string bottleneck;  // the unit that was busy for the largest share of the frame
+  double bottleneck_share = 0;
+
+  double error() const { return simulated_fps / published_fps - 1; }
+};
+
+// The frames of Ren 2002, Table 2: model by model, the lower resolution and the Radeon first, as printed.
+// `fidelity` gives times. Weights are captured from one view only: they say nothing of the time.
+std::vector<Table2Row> table2_rows(Fidelity fidelity, const Progress& progress = {});
+
+// The median of the absolute errors of `rows`, which are not empty.
+double median_error(std::span<const Table2Row> rows);
+
+void reproduce_table2(Findings& findings, const Progress& progress);
+
+}  // namespace splatscope::studies
