@@ -12,6 +12,7 @@ struct Invocation {
 
 // Each command adds itself to the program's command line: its options, its help with an example, and what it
 // calls. A command has no logic of its own. It reports bad input by throwing UserError.
+void add_explain_command(CLI::App& app, Invocation& invocation);
 void add_machine_command(CLI::App& app);
 void add_record_command(CLI::App& app, Invocation& invocation);
 void add_reproduce_command(CLI::App& app, Invocation& invocation);

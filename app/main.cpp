@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   add_machine_command(app);
   add_shader_command(app);
   add_trace_command(app);
+  add_explain_command(app, invocation);
   add_scene_command(app);
   try {
     app.parse(argc, argv);

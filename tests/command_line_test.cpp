@@ -34,6 +34,7 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
                                                           {"shader", "debug"},
                                                           {"shader", "run"},
                                                           {"sample"},
+                                                          {"explain"},
                                                           {"study"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
@@ -205,6 +206,19 @@ TEST(CommandLine, RunWritesATimelineAndCounters) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"a", "c.csv", "small.toml", "t.json"}));
   run.insert(run.end(), {"--fidelity", "functional"});
   expect_refused(run_program(run, folder.path()), "--fidelity");
+}
+
+TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const Outcome pixel = run_program({"explain", "small.toml", "--pixel", "32,32"}, folder.path());
+  EXPECT_EQ(pixel.status, 0) << pixel.error;
+  EXPECT_NE(pixel.out.find("command 0: clear"), std::string::npos);
+  const Outcome vertex = run_program({"explain", "small.toml", "--vertex", "0,3"}, folder.path());
+  EXPECT_NE(vertex.out.find("end of the program"), std::string::npos) << vertex.error;
+  expect_refused(run_program({"explain", "small.toml", "--pixel", "32"}, folder.path()), "--pixel");
+  expect_refused(run_program({"explain", "small.toml", "--pixel", "4000,1"}, folder.path()), "--pixel");
+  EXPECT_EQ(run_program({"explain", "small.toml"}, folder.path()).status, 2);
 }
 
 TEST(CommandLine, TraceOfASceneRunsAsTheScene) {

@@ -1,0 +1,74 @@
+#include <charconv>
+#include <iostream>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/progress_bar.h"
+#include "model/error.h"
+#include "studies/explain.h"
+#include "studies/run.h"
+
+namespace splatscope::app {
+namespace {
+
+struct Options {
+  std::string input;
+  std::string machine = "geforce4-ti4400";
+  std::string pixel, vertex;
+};
+
+// "12,34". Throws UserError naming `option`.
+std::pair<std::uint32_t, std::uint32_t> two_numbers(const std::string& text, const char* option,
+                                                    const char* what) {
+  std::pair<std::uint32_t, std::uint32_t> numbers;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, numbers.first);
+  if (first.ec == std::errc{} && first.ptr != end && *first.ptr == ',') {
+    const auto second = std::from_chars(first.ptr + 1, end, numbers.second);
+    if (second.ec == std::errc{} && second.ptr == end) return numbers;
+  }
+  throw UserError(option, 0, "\"" + text + "\", expected " + what);
+}
+
+void explain(const Options& options, bool quiet) {
+  std::pair<std::uint32_t, std::uint32_t> pixel, vertex;
+  if (!options.pixel.empty()) pixel = two_numbers(options.pixel, "--pixel", "X,Y, a pixel from the top left");
+  if (!options.vertex.empty())
+    vertex = two_numbers(options.vertex, "--vertex", "D,I, a draw and an index, both from 0");
+  const Machine machine = machine::load(options.machine);
+  ProgressBar loading("loading", quiet);
+  auto opened = studies::open_input(options.input, loading.callback());
+  loading.clear();
+  ProgressBar recording("recording", quiet);
+  const studies::Input input =
+      studies::make_input(std::move(opened), options.input, machine, recording.callback());
+  recording.clear();
+  if (!options.pixel.empty()) {
+    std::cout << studies::describe(
+        input.trace, studies::explain_pixel(input.trace, machine.numbers, pixel.first, pixel.second));
+  }
+  if (!options.vertex.empty())
+    std::cout << studies::explain_vertex(input.trace, machine.numbers, vertex.first, vertex.second);
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("explain", "what made a pixel, or what a vertex program did");
+  const auto options = std::make_shared<Options>();
+  command->add_option("INPUT", options->input, "FILE.trace, scene file, or name of a ready scene")
+      ->required();
+  command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
+      ->capture_default_str();
+  auto* what = command->add_option_group("what");
+  what->add_option(
+      "--pixel", options->pixel,
+      "X,Y: every triangle that covers it, in order: depth test, diffuse, texel, frame before and after");
+  what->add_option("--vertex", options->vertex,
+                   "D,I: the vertex program of index I in draw D, by instruction");
+  what->require_option(1, 2);
+  command->footer("Example: splatscope explain checkerboard-ewa-per-surfel --pixel 256,400");
+  command->callback([options, &invocation] { explain(*options, invocation.quiet); });
+}
+
+}  // namespace splatscope::app

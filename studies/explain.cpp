@@ -1,0 +1,210 @@
+#include "studies/explain.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <sstream>
+
+#include "model/error.h"
+#include "model/render.h"
+#include "model/vertex/vertex_fetch.h"
+#include "studies/shader_debugger.h"
+
+namespace splatscope::studies {
+namespace {
+
+// Renders what reached one pixel: a pixel holds what the triangles that cover it did, in order, so the trace
+// is drawn again with these triangles alone, one step further each time.
+class PixelHistory {
+ public:
+  PixelHistory(const Trace& trace, const NumberFormats& formats, std::uint32_t x, std::uint32_t y)
+      : trace_(trace), pixel_(std::size_t{y} * trace.width + x) {
+    options_.formats = formats;
+    options_.record_work = false;
+    exact_ = options_;
+    exact_.formats.frame = FrameFormat::float32;
+    probe_ = exact_;
+    diffuse_program_ = add_program("ps_1_1\nmov r0, v0\n");
+    texel_program_ = add_program("ps_1_1\ntex t0\nmov r0, t0\n");
+  }
+
+  void add(PixelStep step, Command command) {
+    done_.push_back(std::move(command));
+    const Frame frame = render_view(trace_, done_, options_);
+    step.color = frame.color(pixel_);
+    step.depth = frame.depth_value(pixel_);
+    step.exact = render_view(trace_, done_, exact_).color(pixel_);
+    steps.push_back(step);
+  }
+
+  // One triangle of `draw`.
+  void add_triangle(PixelStep step, Draw draw) {
+    draw.first_index += 3 * step.triangle;
+    draw.index_count = 3;
+    step.writes_color = draw.state.color_write;
+    if (step.writes_color) {
+      step.source = probe(draw, draw.pixel_program);
+      step.diffuse = probe(draw, diffuse_program_);
+      if (draw.texture) step.texel = probe(draw, texel_program_);
+    }
+    add(step, draw);
+  }
+
+  std::vector<PixelStep> steps;
+
+ private:
+  std::uint32_t add_program(const char* text) {
+    trace_.programs.push_back({"probe.ps", text});
+    return static_cast<std::uint32_t>(trace_.programs.size() - 1);
+  }
+
+  // What `program` gives for the pixel, whatever is in the frame.
+  Vec4 probe(Draw draw, std::optional<std::uint32_t> program) const {
+    draw.pixel_program = program;
+    draw.state.depth_test = false;
+    draw.state.depth_write = false;
+    draw.state.blend = false;
+    const Command commands[] = {Clear{}, draw};
+    return render_view(trace_, commands, probe_).color(pixel_);
+  }
+
+  Trace trace_;
+  std::size_t pixel_;
+  RenderOptions options_, exact_, probe_;
+  std::uint32_t diffuse_program_ = 0, texel_program_ = 0;
+  std::vector<Command> done_;
+};
+
+// Calls found(triangle, passed) for every triangle of the draw that covers the pixel, in order.
+template <class Found>
+void for_triangles_at(const DrawWork& work, std::uint32_t x, std::uint32_t y, Found found) {
+  const unsigned bit = (y & 1) * 2 + (x & 1);
+  std::size_t quad = 0;
+  for (std::uint32_t triangle = 0; triangle < work.triangles.size(); ++triangle) {
+    bool covered = false, passed = false;
+    for (const std::size_t end = quad + work.triangles[triangle].quad_count; quad < end; ++quad) {
+      const QuadWork& q = work.quads[quad];
+      if (q.x != x / 2 || q.y != y / 2 || (q.covered >> bit & 1) == 0) continue;
+      covered = true;
+      passed = passed || (q.passed >> bit & 1) != 0;
+    }
+    if (covered) found(triangle, passed);
+  }
+}
+
+std::string text_of(const Vec4& color) {
+  return fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", color[0], color[1], color[2], color[3]);
+}
+
+nlohmann::ordered_json hex_of(const Vec4& value) {
+  auto words = nlohmann::ordered_json::array();
+  for (const float component : value)
+    words.push_back(fmt::format("{:08x}", std::bit_cast<std::uint32_t>(component)));
+  return words;
+}
+
+const Draw& draw_of(const Trace& trace, std::uint32_t number) {
+  std::uint32_t draws = 0;
+  for (const Command& command : trace.commands) {
+    if (const auto* draw = std::get_if<Draw>(&command); draw && draws++ == number) return *draw;
+  }
+  throw UserError("--vertex", 0,
+                  fmt::format("draw {} of a trace with {}, expected one from 0", number, draws));
+}
+
+}  // namespace
+
+std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& formats, std::uint32_t x,
+                                     std::uint32_t y) {
+  if (x >= trace.width || y >= trace.height) {
+    throw UserError("--pixel", 0,
+                    fmt::format("{},{} is outside of the frame, expected X below {} and Y below {}", x, y,
+                                trace.width, trace.height));
+  }
+  RenderOptions options;
+  options.formats = formats;
+  const std::vector<DrawWork> work = render(trace, options).work;
+  PixelHistory history(trace, formats, x, y);
+  std::size_t draws = 0;
+  for (std::uint32_t i = 0; i < trace.commands.size(); ++i) {
+    const Command& command = trace.commands[i];
+    PixelStep step;
+    step.command = i;
+    if (const auto* draw = std::get_if<Draw>(&command)) {
+      for_triangles_at(work[draws++], x, y, [&](std::uint32_t triangle, bool passed) {
+        step.triangle = triangle;
+        step.passed = passed;
+        history.add_triangle(step, *draw);
+      });
+      continue;
+    }
+    step.kind = std::holds_alternative<Clear>(command)     ? PixelStep::Kind::clear
+                : std::holds_alternative<Present>(command) ? PixelStep::Kind::present
+                                                           : PixelStep::Kind::normalize;
+    history.add(step, command);
+  }
+  return std::move(history.steps);
+}
+
+std::string describe(const Trace& trace, const std::vector<PixelStep>& steps) {
+  std::string out;
+  std::uint32_t command = ~std::uint32_t{0};
+  for (const PixelStep& step : steps) {
+    const auto* draw = std::get_if<Draw>(&trace.commands[step.command]);
+    if (draw && step.command != command) {
+      out += fmt::format("command {}: draw by {}\n", step.command, trace.programs[draw->vertex_program].name);
+    }
+    command = step.command;
+    if (!draw) {
+      constexpr const char* kNames[] = {"clear", "", "normalise on the host", "present"};
+      out += fmt::format("command {}: {}\n", step.command, kNames[static_cast<int>(step.kind)]);
+    } else {
+      out += fmt::format("  triangle {}: depth test {}", step.triangle, step.passed ? "passed" : "failed");
+      if (step.passed && step.writes_color) {
+        out += fmt::format("\n    diffuse {}  texel alpha {:.4f}  source {}", text_of(step.diffuse),
+                           step.texel[3], text_of(step.source));
+      }
+      out += '\n';
+    }
+    if (!draw || step.passed) {
+      out += fmt::format("    frame   {}  in binary32 {}  depth {:.7f}\n", text_of(step.color),
+                         text_of(step.exact), step.depth);
+    }
+  }
+  return out;
+}
+
+std::string explain_vertex(const Trace& trace, const NumberFormats& formats, std::uint32_t number,
+                           std::uint32_t index) {
+  const Draw& draw = draw_of(trace, number);
+  const std::vector<std::byte>& bytes = trace.buffers[draw.vertex_buffer].bytes;
+  const std::uint64_t vertex = std::uint64_t{draw.base_vertex} + index;
+  const std::uint64_t vertices = draw.vertex_stride == 0 ? 0 : bytes.size() / draw.vertex_stride;
+  if (vertex >= vertices) {
+    throw UserError("--vertex", 0,
+                    fmt::format("vertex {} of draw {}, expected one from 0 to {}", index, number,
+                                static_cast<std::int64_t>(vertices) - 1 - draw.base_vertex));
+  }
+  vertex::InputBatch inputs;
+  vertex::fill_defaults(inputs);
+  const auto place = static_cast<std::uint32_t>(vertex);
+  vertex::fetch(draw.attributes, bytes, draw.vertex_stride, {&place, 1}, inputs);
+  nlohmann::ordered_json registers = {{"constants", nlohmann::ordered_json::object()},
+                                      {"inputs", nlohmann::ordered_json::object()}};
+  for (std::size_t i = 0; i < draw.constants.size(); ++i)
+    registers["constants"][fmt::format("c{}", i)] = hex_of(draw.constants[i]);
+  for (const VertexAttribute& attribute : draw.attributes) {
+    const auto& v = inputs.v[attribute.input];
+    registers["inputs"][fmt::format("v{}", attribute.input)] = hex_of({v[0][0], v[1][0], v[2][0], v[3][0]});
+  }
+  const ShaderText& shader = trace.programs[draw.vertex_program];
+  ShaderDebugger debugger(isa::load(shader.text, shader.name),
+                          ShaderCase::of_object(std::move(registers), "--vertex", 0),
+                          formats.vertex_arithmetic);
+  std::istringstream commands("continue\nprint\n");
+  std::ostringstream out;
+  debugger.run(commands, "--vertex", out, false);
+  return fmt::format("vertex {} of draw {}, by {}\n", vertex, number, shader.name) + out.str();
+}
+
+}  // namespace splatscope::studies

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "model/number/formats.h"
+
+// One pixel or one vertex of a trace, step by step: `splatscope explain`.
+namespace splatscope::studies {
+
+// What a command did to a pixel.
+struct PixelStep {
+  enum class Kind : std::uint8_t { clear, triangle, normalize, present };
+
+  Kind kind = Kind::triangle;
+  std::uint32_t command = 0;  // its place in the trace
+  // Of a triangle:
+  std::uint32_t triangle = 0;  // of the draw, as indexed
+  bool passed = false;         // the depth test
+  bool writes_color = false;
+  Vec4 diffuse{};  // as the pixel unit sees it
+  Vec4 texel{};    // of the draw's texture, if it has one
+  Vec4 source{};   // out of the pixel program
+  // After the step: of the frame in the machine's format, and as the same steps give it in binary32.
+  Vec4 color{};
+  Vec4 exact{};
+  double depth = 0;  // 0 (near) to 1
+};
+
+// Every step that reached the pixel, in order. Triangles that do not cover it have none. Throws UserError
+// (file "--pixel") where it lies outside of the frame.
+std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& formats, std::uint32_t x,
+                                     std::uint32_t y);
+
+// The same as text, a line a step, and a heading for each command.
+std::string describe(const Trace& trace, const std::vector<PixelStep>& steps);
+
+// The vertex program of vertex `index` of the `draw`-th draw (both from 0; `index` as in the index buffer,
+// the draw's base vertex is added), instruction by instruction with what each reads and writes. Throws
+// UserError (file "--vertex") where there is no such draw or vertex.
+std::string explain_vertex(const Trace& trace, const NumberFormats& formats, std::uint32_t draw,
+                           std::uint32_t index);
+
+}  // namespace splatscope::studies
