@@ -31,6 +31,12 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
     std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels, traces::describe(input.skipped));
   if (input.recorded && input.recorded->blocks.drawn > 0)
     std::cout << fmt::format("  {}\n", traces::describe(input.recorded->blocks));
+  if (input.recorded && input.recorded->weights_captured > 0)
+    std::cout << fmt::format(
+        "  weights: {} captured, {} of them a vertex; {} seen from no view, {} outside "
+        "of the box\n",
+        input.recorded->weights_captured, input.recorded->weights_at_edges,
+        input.recorded->weights_by_default, input.recorded->weights_outside_box);
   if (input.mesh.triangles > 0) std::cout << fmt::format("  {}\n", traces::describe(input.mesh));
   const RenderCounters& c = run.rendered.counters;
   std::cout << fmt::format(

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "studies/reproduction/figure10.h"
 #include "studies/reproduction/table1.h"
 #include "studies/reproduction/table2.h"
 
@@ -16,6 +17,8 @@ std::span<const Study> reproductions() {
       Study{"fig5", "the two depth offsets on a model, and z_t from too small to too large",
             reproduce_figure5},
       Study{"fig8", "the object-space EWA resampling filter of a surfel", reproduce_figure8},
+      Study{"fig10", "normalisation of the weights: none, in a box, per surfel, per pixel",
+            reproduce_figure10},
       Study{"fig11", "a checkerboard by the three algorithms", reproduce_figure11},
   };
   return kReproductions;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kernels/reference/screen_space.h"
+#include "model/machine/machine.h"
+#include "model/output/frame.h"
+#include "studies/study.h"
+#include "traces/weight_capture.h"
+
+// Normalisation of the splats' weights (Ren 2002, section 7): Fig. 10, and what the text says beside it.
+namespace splatscope::studies {
+
+// One value of gamma (7.2): what clamping does to the capture of weights, and that to the picture.
+struct GammaRow {
+  double gamma = 0;
+  double saturated = 0;  // of the pixels drawn without prefilter as for a capture: alpha is at its largest
+  double clamped = 0;    // of the surfels: their weight is that of a clamped sum
+  double psnr = 0;       // of the normalised picture, dB against `reference`
+};
+std::vector<GammaRow> sweep_gamma(const traces::Scene& scene, std::span<const double> gammas,
+                                  const Machine& machine, const kernels::ScreenSpacePicture& reference,
+                                  const Progress& progress = {});
+
+// The scene's picture with these weights, in 8 bits as the machine draws it.
+Frame draw_weighted(const traces::Scene& scene, const traces::CapturedWeights& weights,
+                    const Machine& machine);
+
+void reproduce_figure10(Findings& findings, const Progress& progress);
+
+}  // namespace splatscope::studies
