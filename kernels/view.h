@@ -30,6 +30,8 @@ struct View {
   glm::dvec2 window(const glm::dvec3& p) const {
     return center() + glm::dvec2(eta * p.x / p.z, -eta * p.y / p.z);
   }
+  // Camera z of a depth in the frustum: 0 at the near plane, 1 at the far plane.
+  double z_of(double depth) const { return near_plane / (1 - depth * (far_plane - near_plane) / far_plane); }
 };
 
 // A view from `eye` to `target` with `up` upward in the picture; the field of view is that of the frame's

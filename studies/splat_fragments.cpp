@@ -124,16 +124,6 @@ void visit_fragments(const Trace& trace, const Rendered& rendered, const Visit& 
   }
 }
 
-bool is_inside(const VisibleSurface& surface, int x, int y) {
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      if (!std::isfinite(surface.depth[static_cast<std::size_t>((y + dy) * surface.width + x + dx)]))
-        return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 VisibleSurface visible_surface(const traces::Scene& scene) {
@@ -161,6 +151,17 @@ VisibleSurface visible_surface(const traces::Scene& scene) {
     }
   }
   return surface;
+}
+
+bool is_inside(const VisibleSurface& surface, int x, int y) {
+  if (x < 1 || y < 1 || x + 1 >= surface.width || y + 1 >= surface.height) return false;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (!std::isfinite(surface.depth[static_cast<std::size_t>((y + dy) * surface.width + x + dx)]))
+        return false;
+    }
+  }
+  return true;
 }
 
 void for_each_fragment(const traces::Scene& scene, const Trace& trace, const Rendered& rendered,
@@ -204,8 +205,8 @@ FragmentCounts count_fragments(const traces::Scene& scene, const Trace& trace, c
     counts.torn_pixels += pixels[i].surface_kept < 0.5 * pixels[i].surface;
     counts.leaking_pixels += pixels[i].leaking;
   }
-  for (int y = 1; y + 1 < surface.height; ++y) {
-    for (int x = 1; x + 1 < surface.width; ++x) {
+  for (int y = 0; y < surface.height; ++y) {
+    for (int x = 0; x < surface.width; ++x) {
       if (!is_inside(surface, x, y)) continue;
       ++counts.inside_pixels;
       counts.holes += !pixels[static_cast<std::size_t>(y * surface.width + x)].drawn;

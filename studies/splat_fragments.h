@@ -23,6 +23,9 @@ struct VisibleSurface {
 };
 VisibleSurface visible_surface(const traces::Scene& scene);
 
+// Whether the pixel's ray and those of the eight pixels about it all meet the surface.
+bool is_inside(const VisibleSurface& surface, int x, int y);
+
 // Which surface a surfel belongs to, as a pixel sees it and whatever z_t is. To the visible one where it and
 // the surfel that the ray meets first face the same way, and are no further apart than the splat and the quad
 // reach together: two that overlap on one smooth surface always are; parallel sheets nearer than that no
@@ -58,10 +61,8 @@ struct FragmentCounts {
   std::size_t surface_pixels = 0;  // whose ray meets a surface; of these:
   std::size_t torn_pixels = 0;     // with less than half of what the visible surface's weights sum to
   std::size_t leaking_pixels = 0;  // with a fragment of a surface behind
-  // Pixels whose ray and those of the eight pixels about it meet a surface, and of these the ones on which
-  // no fragment was left.
-  std::size_t inside_pixels = 0;
-  std::size_t holes = 0;
+  std::size_t inside_pixels = 0;   // is_inside; of these:
+  std::size_t holes = 0;           // without any fragment
 };
 FragmentCounts count_fragments(const traces::Scene& scene, const Trace& trace, const Rendered& rendered,
                                const VisibleSurface& surface);

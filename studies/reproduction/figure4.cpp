@@ -52,7 +52,7 @@ Plot::Series depth_image(const kernels::View& view, const Frame& frame) {
   for (int x = 0; x < view.width; ++x) {
     const double depth = frame.depth_value(static_cast<std::size_t>(kRow * view.width + x));
     if (depth == 1) continue;
-    const double z = view.near_plane / (1 - depth * (view.far_plane - view.near_plane) / view.far_plane);
+    const double z = view.z_of(depth);
     series.x.push_back(z * (x + 0.5 - view.center().x) / view.eta);
     series.y.push_back(z);
   }

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "studies/reproduction/figure10.h"
+#include "studies/reproduction/figure3.h"
 #include "studies/reproduction/table1.h"
 #include "studies/reproduction/table2.h"
 
@@ -12,6 +13,7 @@ std::span<const Study> reproductions() {
   static constexpr std::array kReproductions = {
       Study{"table1", "frame rates of the three algorithms on both machines", reproduce_table1},
       Study{"table2", "frame rates of stand-ins for its four models on both machines", reproduce_table2},
+      Study{"fig3", "the depth image of visibility splatting, by the size of its quads", reproduce_figure3},
       Study{"fig4", "the depth offset along camera z and along viewing rays, two surfaces",
             reproduce_figure4},
       Study{"fig5", "the two depth offsets on a model, and z_t from too small to too large",
