@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "studies/alpha_texture.h"
 #include "studies/fidelity.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
@@ -17,6 +18,8 @@ std::span<const Study> own_studies() {
       Study{"software",
             "screen-space EWA in software against the machines, by resolution (Ren 2002, section 8)",
             study_software},
+      Study{"alpha-texture", "the size of the alpha texture, for any cutoff (Ren 2002, Eq. 15 and 16)",
+            study_alpha_texture},
   };
   return kStudies;
 }
