@@ -7,13 +7,10 @@
 #include "model/error.h"
 #include "model/isa/opcode.h"
 #include "model/isa/program.h"
+#include "model/number/frame_value.h"
 
 namespace splatscope::sim {
 namespace {
-
-std::uint32_t bytes_of(FrameFormat format) {
-  return format == FrameFormat::unorm8 ? 4 : 16;
-}
 
 std::uint32_t bytes_of(DepthFormat format) {
   return format == DepthFormat::z16 ? 2 : 4;
@@ -85,7 +82,7 @@ std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel&
 
 MemoryLayout lay_out(const Trace& trace, const Machine& machine) {
   MemoryLayout layout;
-  layout.color = FrameLines::of(trace.width, trace.height, bytes_of(machine.numbers.frame));
+  layout.color = FrameLines::of(trace.width, trace.height, bytes_per_pixel(machine.numbers.frame));
   layout.depth = FrameLines::of(trace.width, trace.height, bytes_of(machine.numbers.depth));
   Allocator video(machine.memory);
   Allocator agp(machine.memory);

@@ -75,7 +75,8 @@ TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
   EXPECT_EQ(message_of("[agp]\nlanes = 2\n"),
             "m.toml:2: unknown key agp.lanes, expected one of bytes_per_clock, latency_nanoseconds, queue");
   EXPECT_EQ(message_of("[numbers]\n\nframe = \"rgb\"\n"),
-            "m.toml:3: numbers.frame is \"rgb\", expected a string, unorm8 or float32");
+            "m.toml:3: numbers.frame is \"rgb\", expected a string, unorm8 or float32 or unorm10 or "
+            "unorm16 or half");
   EXPECT_EQ(message_of("[vertex]\nunits = { value = 2, confidence = \"sure\" }\n"),
             "m.toml:2: confidence of vertex.units is \"sure\", expected published, measured, inferred, "
             "fitted, stand-in");

@@ -34,6 +34,8 @@ ChoiceField choice(std::span<const std::string_view> names) {
 
 constexpr std::array<std::string_view, 2> kArithmetics{"ieee", "nv20"};
 constexpr std::array<std::string_view, 2> kColorFormats{"unorm8", "float32"};
+constexpr std::array<std::string_view, 5> kFrameFormats{"unorm8", "float32", "unorm10", "unorm16", "half"};
+constexpr std::array<std::string_view, 3> kFrameRoundings{"nearest", "truncate", "dither"};
 constexpr std::array<std::string_view, 2> kCombinerFormats{"float32", "signed9"};
 constexpr std::array<std::string_view, 3> kDepthFormats{"z16", "z24", "float32"};
 
@@ -47,7 +49,9 @@ std::vector<Parameter> number_parameters() {
        "interpolated colours as the pixel unit sees them, and its output"},
       {"numbers.combiner", "", choice<&NumberFormats::combiner>(kCombinerFormats),
        "results in the pixel unit: binary32, or the 9-bit signed steps of register combiners"},
-      {"numbers.frame", "", choice<&NumberFormats::frame>(kColorFormats), "frame buffer, a channel"},
+      {"numbers.frame", "", choice<&NumberFormats::frame>(kFrameFormats), "frame buffer, a channel"},
+      {"numbers.frame_rounding", "", choice<&NumberFormats::frame_rounding>(kFrameRoundings),
+       "of blended colours in a unorm frame buffer"},
       {"numbers.depth", "", choice<&NumberFormats::depth>(kDepthFormats), "depth buffer"},
       {"numbers.subpixel_bits", "bits", integer<&M::numbers, &NumberFormats::subpixel_bits>(0, 8),
        "fraction of window x and y on which coverage is decided"},

@@ -7,8 +7,13 @@ namespace splatscope {
 // Arithmetic of the vertex unit: IEEE binary32, or what the NV20 does (docs: NV20 arithmetic).
 enum class Arithmetic : std::uint8_t { ieee, nv20 };
 
-// Frame buffer: 8 bits a channel with the hardware's rounding, or binary32 (for proofs against a reference).
-enum class FrameFormat : std::uint8_t { unorm8, float32 };
+// Frame buffer, a channel: 8 bits, or binary32 (for proofs against a reference); and what no machine of 2002
+// blended into: 10 and 16 bits, and binary16.
+enum class FrameFormat : std::uint8_t { unorm8, float32, unorm10, unorm16, half };
+
+// How a blended colour becomes the whole steps of a UNORM frame buffer: to the nearest, down, or by an
+// ordered 4x4 dither.
+enum class FrameRounding : std::uint8_t { nearest, truncate, dither };
 
 // Interpolated colours as the pixel unit sees them, and its output to the blend unit.
 enum class ColorFormat : std::uint8_t { unorm8, float32 };
@@ -25,6 +30,7 @@ struct NumberFormats {
   ColorFormat color = ColorFormat::unorm8;
   CombinerFormat combiner = CombinerFormat::float32;
   FrameFormat frame = FrameFormat::unorm8;
+  FrameRounding frame_rounding = FrameRounding::nearest;
   DepthFormat depth = DepthFormat::z24;
   int subpixel_bits = 4;  // of window x and y, 0 to 8: coverage is decided on this grid
 

@@ -16,7 +16,7 @@ Frame::Frame(std::uint32_t frame_width, std::uint32_t frame_height, const Number
 }
 
 Vec4 Frame::color(std::size_t pixel) const {
-  if (formats.frame == FrameFormat::float32) return colors32[pixel];
+  if (formats.frame != FrameFormat::unorm8) return colors32[pixel];
   Vec4 color;
   for (std::size_t c = 0; c < 4; ++c) color[c] = static_cast<float>(colors8[pixel][c]) / 255.0f;
   return color;

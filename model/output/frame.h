@@ -11,8 +11,8 @@
 // The frame and depth buffers, and what is written to them.
 namespace splatscope {
 
-// Row-major from the top left, width*height pixels. `colors8` or `colors32` is filled, as the frame format
-// says.
+// Row-major from the top left, width*height pixels. `colors8` is filled where the frame format is
+// unorm8, else `colors32`, with what the format can hold.
 struct Frame {
   std::uint32_t width = 0, height = 0;
   NumberFormats formats;

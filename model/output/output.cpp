@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <bit>
 
+#include "model/number/frame_value.h"
 #include "model/output/simd_blend.h"
 
 namespace splatscope::output {
 namespace {
+
+constexpr double kHalfStep = 0.5;  // rounds to nearest: what does not blend is not dithered
 
 // The factor of one channel in a float frame buffer.
 float factor_of(BlendFactor factor, const Vec4& source, const Vec4& destination, std::size_t channel) {
@@ -61,22 +64,28 @@ void clear(const Clear& command, Frame& frame) {
   Color8 color8;
   for (std::size_t c = 0; c < 4; ++c) color8[c] = quantize_unorm8(command.color[c]);
   std::ranges::fill(frame.colors8, color8);
-  std::ranges::fill(frame.colors32, command.color);
+  Vec4 stored;
+  for (std::size_t c = 0; c < 4; ++c)
+    stored[c] = stored_value(frame.formats.frame, command.color[c], kHalfStep);
+  std::ranges::fill(frame.colors32, stored);
   std::ranges::fill(frame.depth, quantize_depth(command.depth, frame.formats.depth));
 }
 
 namespace {
 
-void write_float(const Vec4& color, Vec4& stored, const DrawState& state) {
-  if (!state.blend) {
-    stored = color;
-    return;
-  }
-  const Vec4 destination = stored;
+Vec4 blended(const Vec4& color, const Vec4& destination, const DrawState& state) {
+  if (!state.blend) return color;
+  Vec4 out;
   for (std::size_t c = 0; c < 4; ++c) {
-    stored[c] = color[c] * factor_of(state.source_factor, color, destination, c) +
-                destination[c] * factor_of(state.destination_factor, color, destination, c);
+    out[c] = color[c] * factor_of(state.source_factor, color, destination, c) +
+             destination[c] * factor_of(state.destination_factor, color, destination, c);
   }
+  return out;
+}
+
+double offset_at(std::uint32_t pixel, const DrawState& state, const Frame& frame) {
+  if (!state.blend) return kHalfStep;
+  return rounding_offset(frame.formats.frame_rounding, pixel % frame.width, pixel / frame.width);
 }
 
 // Whether a whole destination is added to what depends on the source alone: as splatting blends.
@@ -88,14 +97,18 @@ bool adds(const DrawState& state) {
 
 void write_colors(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
                   const DrawState& state, Frame& frame) {
-  if (frame.formats.frame == FrameFormat::float32) {
+  const NumberFormats& formats = frame.formats;
+  if (formats.frame != FrameFormat::unorm8) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const Vec4 color{colors[0][i], colors[1][i], colors[2][i], colors[3][i]};
-      write_float(color, frame.colors32[pixels[i]], state);
+      Vec4& stored = frame.colors32[pixels[i]];
+      stored = blended({colors[0][i], colors[1][i], colors[2][i], colors[3][i]}, stored, state);
+      if (formats.frame == FrameFormat::float32) continue;
+      const double offset = offset_at(pixels[i], state, frame);
+      for (float& channel : stored) channel = stored_value(formats.frame, channel, offset);
     }
     return;
   }
-  if (!state.blend || adds(state)) {
+  if (!state.blend || (adds(state) && formats.frame_rounding == FrameRounding::nearest)) {
     add_unorm8(colors, pixels, state, frame.colors8);
     return;
   }
@@ -103,7 +116,8 @@ void write_colors(const std::array<const float*, 4>& colors, std::span<const std
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     Color8 source;
     for (std::size_t c = 0; c < 4; ++c) source[c] = quantize_unorm8(colors[c][i]);
-    frame.colors8[pixels[i]] = blend_unorm8(blend, source, frame.colors8[pixels[i]]);
+    const auto offset = static_cast<int>(255 * offset_at(pixels[i], state, frame));
+    frame.colors8[pixels[i]] = blend_unorm8(blend, source, frame.colors8[pixels[i]], offset);
   }
 }
 
@@ -118,7 +132,8 @@ void normalize(Frame& frame) {
   }
   for (Vec4& pixel : frame.colors32) {
     if (!(pixel[3] > 0)) continue;
-    for (std::size_t c = 0; c < 3; ++c) pixel[c] /= pixel[3];
+    for (std::size_t c = 0; c < 3; ++c)
+      pixel[c] = stored_value(frame.formats.frame, pixel[c] / pixel[3], kHalfStep);
     pixel[3] = 1;
   }
 }

@@ -134,6 +134,34 @@ TEST(Output, SaturatesInEightBits) {
   EXPECT_EQ((Color8{255, 0, 0, 255}), frame.colors8[0]);
 }
 
+// 16 splats of 0.7/255 each on a tile of 4x4 pixels: what each frame format makes of their sum.
+TEST(Output, FrameFormatsRoundSmallSums) {
+  DrawState state;
+  state.blend = true;
+  state.source_factor = BlendFactor::src_alpha;
+  state.destination_factor = BlendFactor::one;
+  const auto mean = [&](FrameFormat format, FrameRounding rounding) {
+    NumberFormats numbers = formats(format);
+    numbers.frame_rounding = rounding;
+    Frame frame(4, 4, numbers);
+    double sum = 0;
+    for (std::uint32_t pixel = 0; pixel < 16; ++pixel) {
+      for (int i = 0; i < 16; ++i) write_one({7.0f / 255, 0, 0, 26.0f / 255}, pixel, state, frame);
+      sum += 255 * static_cast<double>(frame.color(pixel)[0]);
+    }
+    return sum / 16;
+  };
+  const double exact = 16 * 7 * 26 / 255.0;
+  EXPECT_DOUBLE_EQ(mean(FrameFormat::unorm8, FrameRounding::truncate), 0);
+  EXPECT_NEAR(mean(FrameFormat::unorm8, FrameRounding::nearest), 16, 1e-5);
+  EXPECT_NEAR(mean(FrameFormat::unorm8, FrameRounding::dither), exact, 16.0 / 32);
+  EXPECT_NEAR(mean(FrameFormat::unorm10, FrameRounding::nearest), exact, 16 * 0.5 / 4);
+  EXPECT_LT(mean(FrameFormat::unorm16, FrameRounding::truncate), exact);
+  EXPECT_NEAR(mean(FrameFormat::unorm16, FrameRounding::truncate), exact, 16.0 / 257);
+  EXPECT_NEAR(mean(FrameFormat::half, FrameRounding::nearest), exact, 16 * exact / 4096);
+  EXPECT_NEAR(mean(FrameFormat::float32, FrameRounding::nearest), exact, 1e-5);
+}
+
 TEST(Output, NormalizesBySummedWeights) {
   Frame frame(2, 1, formats(FrameFormat::unorm8));
   frame.colors8 = {{100, 50, 0, 200}, {7, 0, 0, 0}};
