@@ -16,11 +16,11 @@ namespace {
 constexpr std::uint32_t kCorners = 4;  // of a surfel's quad
 constexpr std::uint32_t kIndices = 6;  // two triangles
 
-Buffer vertex_buffer(std::span<const kernels::VertexField> fields, const SurfelBuffer& from,
+Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& from,
                      const Splatting& settings) {
   const auto& [surfels, weights] = from;
   Buffer buffer;
-  const std::size_t bytes = kernels::vertex_bytes(fields);
+  const std::size_t bytes = kernels::vertex_bytes(program.fields);
   buffer.bytes.resize(surfels.size() * kCorners * bytes);
   std::byte* out = buffer.bytes.data();
   for (std::size_t k = 0; k < surfels.size(); ++k) {
@@ -28,8 +28,9 @@ Buffer vertex_buffer(std::span<const kernels::VertexField> fields, const SurfelB
     kernels::Surfel surfel{glm::dvec3(surfels[k].position), axes.s, axes.t, settings.sigma, 0,
                            glm::dvec3(surfels[k].color)};
     for (std::size_t i = 0; i < kCorners; ++i) {
-      surfel.weight = weights[k][i];
-      kernels::write_vertex(fields, {surfel, kernels::kQuadCorners[i], std::sqrt(2 * settings.cutoff)}, out);
+      surfel.weight = weights[k][(i + program.weight_turn) % kCorners];
+      kernels::write_vertex(program.fields,
+                            {surfel, kernels::kQuadCorners[i], std::sqrt(2 * settings.cutoff)}, out);
       out += bytes;
     }
   }
@@ -107,7 +108,7 @@ void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& setting
   const bool shared = std::ranges::equal(splats.program.fields, visibility.program.fields);
   const auto add = [&](RecordedPass& pass, const SurfelBuffer& buffer) {
     pass.vertex_buffers.push_back(static_cast<std::uint32_t>(trace.buffers.size()));
-    trace.buffers.push_back(vertex_buffer(pass.program.fields, buffer, settings));
+    trace.buffers.push_back(vertex_buffer(pass.program, buffer, settings));
   };
   for (const SurfelBuffer& buffer : buffers) {
     add(visibility, buffer);
