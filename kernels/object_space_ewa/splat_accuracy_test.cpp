@@ -1,130 +1,23 @@
+#include "kernels/object_space_ewa/splat_accuracy.h"
+
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
-
-#include "kernels/object_space_ewa/quad_runner.h"
 
 // The vertex programs against the double-precision filter, over random surfels.
 namespace splatscope::kernels {
 namespace {
 
-const double kRadius = std::sqrt(2.0 * kCutoff);
 constexpr int kCount = 100000;
-
-// Rot(theta) Lambda as the four corners show it.
-glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& u) {
-  return {(u[1] - u[0] + u[2] - u[3]) / (4.0 * kRadius), (u[3] - u[0] + u[2] - u[1]) / (4.0 * kRadius)};
-}
-
-// Largest relative deviation, over every direction of the screen, of the measured standard deviation from the
-// exact one: sqrt of the generalised eigenvalues of the two variance matrices, which J does not change.
-double deviation_error(const glm::dmat2& measured, const glm::dmat2& exact) {
-  const glm::dmat2 ratio = glm::inverse(exact) * measured;
-  const glm::dmat2 variance = ratio * glm::transpose(ratio);
-  const double mean = 0.5 * (variance[0][0] + variance[1][1]);
-  const double spread = std::hypot(0.5 * (variance[0][0] - variance[1][1]), variance[0][1]);
-  return std::max(std::sqrt(mean + spread) - 1.0, 1.0 - std::sqrt(std::max(0.0, mean - spread)));
-}
-
-// Largest distance of corresponding corners in pixels under `to_pixels`, for the best symmetry of the square.
-template <typename ToPixels>
-double corner_error(const std::array<glm::dvec2, 4>& u, const glm::dmat2& axes, const ToPixels& to_pixels) {
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t symmetry = 0; symmetry < 8; ++symmetry) {
-    double worst = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t image = symmetry < 4 ? (i + symmetry) % 4 : (symmetry - i) % 4;
-      const glm::dvec2 y = 2.0 * kRadius * (kQuadCorners[image] - 0.5);
-      worst = std::max(worst, glm::distance(to_pixels(u[i]), to_pixels(axes * y)));
-    }
-    best = std::min(best, worst);
-  }
-  return best;
-}
-
-// The parallelogram with the same variance matrix as `axes` that is nearest to `measured`: every factor of a
-// variance matrix is `axes` times an orthogonal matrix.
-glm::dmat2 nearest_factor(const glm::dmat2& measured, const glm::dmat2& axes) {
-  glm::dmat2 turn = glm::inverse(axes) * measured;
-  const double mirror = glm::determinant(turn) < 0 ? -1.0 : 1.0;
-  turn[1] *= mirror;
-  const double angle = std::atan2(turn[0][1] - turn[1][0], turn[0][0] + turn[1][1]);
-  return axes * glm::dmat2{{std::cos(angle), std::sin(angle)},
-                           {-mirror * std::sin(angle), mirror * std::cos(angle)}};
-}
-
-// The same in the window, where every corner is at least half as far away as the surfel's centre; 0
-// elsewhere. A corner near the eye's plane has no bound: the projection magnifies without one.
-double window_corner_error(const View& view, const Surfel& surfel, const std::array<glm::dvec2, 4>& u,
-                           const glm::dmat2& axes) {
-  const glm::dvec3 o = view.camera_space(surfel.position);
-  const glm::dvec3 s = view.camera_direction(surfel.tangent_s);
-  const glm::dvec3 t = view.camera_direction(surfel.tangent_t);
-  for (const glm::dvec2& corner : u) {
-    if (o.z + corner.x * s.z + corner.y * t.z < 0.5 * o.z) return 0;
-  }
-  return corner_error(u, axes, [&](const glm::dvec2& c) { return view.window(o + c.x * s + c.y * t); });
-}
-
-// Where J^-1 J^-T is a multiple of I, so is M, and its axes are arbitrary: rounding of relative size e turns
-// them by about e / anisotropy. Under kRound the corners say nothing and only the variance is compared: there
-// the rounding of S and T, some 1e-6, would turn the 140-pixel diagonal of the largest splats by 0.1 pixel
-// and more.
-constexpr double kRound = 1e-3;
-// |t|/(q - 2 sigma^2): V_r = sigma^2 I turns nothing.
-double anisotropy(const SurfelFilter& filter, double sigma) {
-  const glm::dmat2& m = filter.variance;
-  return std::hypot(m[0][0] - m[1][1], 2.0 * m[0][1]) / (m[0][0] + m[1][1] - 2.0 * sigma * sigma);
-}
-
-struct Errors {
-  double deviation = 0;
-  double corner = 0;         // pixels, by the affine map J
-  double window_corner = 0;  // pixels, by the projection
-  double weight = 0;         // relative, of 1/(2 pi r0 r1)
-  int corners_compared = 0;
-};
-
-// Programs that promise the principal axes; the others may have any factor of the variance matrix.
-bool has_principal_axes(const SplatProgram& program) {
-  return program.name == "paper" || program.name == "plain";
-}
 
 bool by_normal(const SplatProgram& program) {
   return program.name == "normal" || program.name == "plane" || program.name == "facing";
 }
 
-Errors measure(Arithmetic arithmetic, const SplatProgram& program, std::uint32_t seed,
-               const SurfelRanges& ranges = {}) {
-  const bool prefilter = program.name != "plain";
-  const View view = test_view();
-  std::mt19937 generator(seed);
-  const std::vector<Surfel> surfels = random_surfels(view, ranges, kCount, generator);
-  const auto quads = run_quads(program, arithmetic, view, 0.0, surfels);
-  Errors errors;
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    const Surfel& surfel = surfels[i];
-    const SurfelFilter filter = *surfel_filter(view, surfel, prefilter);
-    const std::array<glm::dvec2, 4> u = tangent_plane(view, surfel, quads[i]);
-    const double weight = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter.determinant);
-    errors.deviation = std::max(errors.deviation, deviation_error(measured_axes(u), filter.axes));
-    errors.weight = std::max(errors.weight, std::abs(quads[i][0].diffuse.w / weight - 1.0));
-    glm::dmat2 axes = filter.axes;
-    if (!has_principal_axes(program)) {
-      axes = nearest_factor(measured_axes(u), axes);
-    } else if (prefilter && anisotropy(filter, surfel.sigma) < kRound) {
-      continue;
-    }
-    errors.corner = std::max(errors.corner,
-                             corner_error(u, axes, [&](const glm::dvec2& c) { return filter.jacobian * c; }));
-    errors.window_corner = std::max(errors.window_corner, window_corner_error(view, surfel, u, axes));
-    ++errors.corners_compared;
-  }
+SplatErrors measure(Arithmetic arithmetic, const SplatProgram& program, std::uint32_t seed,
+                    const SurfelRanges& ranges = {}) {
+  const SplatErrors errors = splat_errors(program, arithmetic, seed, kCount, ranges);
   std::printf(
       "%s, seed %u, %d surfels: standard deviation off by %.2e, weight by %.2e; corners of %d by %.2e "
       "pixels, in the window by %.2e\n",
@@ -137,7 +30,7 @@ class EwaAccuracy : public testing::TestWithParam<SplatProgram> {};
 INSTANTIATE_TEST_SUITE_P(Programs, EwaAccuracy, testing::ValuesIn(ewa_programs()), program_name);
 
 TEST_P(EwaAccuracy, ieee) {
-  const Errors errors = measure(Arithmetic::ieee, GetParam(), 2002);
+  const SplatErrors errors = measure(Arithmetic::ieee, GetParam(), 2002);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 0.005);
   EXPECT_LT(errors.corner, 0.1);
@@ -150,7 +43,7 @@ TEST_P(EwaAccuracy, ieee) {
 // from a variance matrix whose eigenvalues are 1 and 1e4, into 0.13 pixel by the perspective of a splat 280
 // pixels wide at cos = 1e-3.
 TEST_P(EwaAccuracy, nv20) {
-  const Errors errors = measure(Arithmetic::nv20, GetParam(), 2003);
+  const SplatErrors errors = measure(Arithmetic::nv20, GetParam(), 2003);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 0.005);
   EXPECT_LT(errors.corner, 0.1);
@@ -162,14 +55,14 @@ TEST_P(EwaAccuracy, tiny_surfels) {
   SurfelRanges ranges;
   ranges.spacing[0] = 1e-3;
   ranges.spacing[1] = 0.05;
-  const Errors errors = measure(Arithmetic::ieee, GetParam(), 2004, ranges);
+  const SplatErrors errors = measure(Arithmetic::ieee, GetParam(), 2004, ranges);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.corner, 0.1);
   EXPECT_LT(errors.window_corner, 0.1);
 }
 
 TEST(SplatAccuracy, plain_in_ieee) {
-  const Errors errors = measure(Arithmetic::ieee, plain_program(), 2005);
+  const SplatErrors errors = measure(Arithmetic::ieee, plain_program(), 2005);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 1e-6);
   EXPECT_LT(errors.corner, 0.001);

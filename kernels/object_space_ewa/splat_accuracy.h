@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/object_space_ewa/quad_runner.h"
+
+namespace splatscope::kernels {
+
+// How far a vertex program is at most from the double-precision filter.
+struct SplatErrors {
+  double deviation = 0;      // relative, of the standard deviation in every direction of the screen
+  double corner = 0;         // pixels, by the affine map J
+  double window_corner = 0;  // pixels, by the projection
+  double weight = 0;         // relative, of 1/(2 pi r0 r1)
+  int corners_compared = 0;
+};
+
+// Over `count` random surfels before test_view(). Programs but paper and plain may draw any parallelogram of
+// the right variance matrix.
+SplatErrors splat_errors(const SplatProgram& program, Arithmetic arithmetic, std::uint32_t seed, int count,
+                         const SurfelRanges& ranges = {});
+
+}  // namespace splatscope::kernels
