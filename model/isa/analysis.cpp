@@ -195,4 +195,20 @@ Analysis analyze(const Program& program) {
   return analysis;
 }
 
+std::vector<bool> dependent_on(const Program& program, std::uint32_t inputs) {
+  RegisterSet dependent;
+  std::vector<bool> result;
+  for (const Instruction& instruction : program.instructions) {
+    const Effects effects = effects_of(program, instruction);
+    const auto end = instruction.sources.begin() + instruction.source_count;
+    const bool depends = (effects.reads & dependent).any() ||
+                         std::any_of(instruction.sources.begin(), end, [&](const Source& s) {
+                           return s.file == RegisterFile::input && (inputs >> s.index & 1u) != 0;
+                         });
+    dependent = depends ? dependent | effects.writes : dependent & ~effects.writes;
+    result.push_back(depends);
+  }
+  return result;
+}
+
 }  // namespace splatscope::isa

@@ -2,6 +2,7 @@
 
 #include <bitset>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,8 @@ struct Analysis {
 };
 
 Analysis analyze(const Program& program);
+
+// Of each instruction, whether its result can depend on one of the given vertex inputs (bit i: v<i>).
+std::vector<bool> dependent_on(const Program& program, std::uint32_t inputs);
 
 }  // namespace splatscope::isa

@@ -49,6 +49,19 @@ TEST(Analysis, CriticalPathIsTheLongestChainInSlots) {
   EXPECT_EQ(analysis.critical_slots, 6);
 }
 
+TEST(Analysis, FollowsInputs) {
+  const isa::Program program = load(
+      "vs_1_1\n"
+      "mov r0, v0\n"
+      "add r1, r0, v3\n"
+      "mul r1.x, r0, r0\n"  // r1.x no longer
+      "mov oD0, r1.x\n"
+      "mov oPos, r1\n",
+      "a");
+  EXPECT_EQ(dependent_on(program, 1u << 3), (std::vector<bool>{false, true, false, false, true}));
+  EXPECT_EQ(dependent_on(program, 1u << 5), std::vector<bool>(5));
+}
+
 TEST(Analysis, PairsReadBeforeTheyWriteAndPhasesLoseAlpha) {
   const Analysis pair = analyze(load("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, v1\n", "a"));
   EXPECT_EQ(dead(pair), (std::vector<bool>{false, false, false}))

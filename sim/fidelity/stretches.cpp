@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/units/vertex/throughput.h"
-
 namespace splatscope::sim {
 
 double whole_clocks(double items, int a_clock) {
@@ -16,10 +14,17 @@ double memory_clocks(double bytes, const Machine& machine) {
 }
 
 Stretches::Stretches(const Trace& trace, const Machine& machine, const MemoryLayout& layout,
-                     const PreparedDraws& draws)
-    : trace_(trace), machine_(machine), traffic_(machine, layout) {
-  for (const auto& slots : draws.vertex_programs)
-    clocks_per_vertex_.push_back(throughput(slots, machine.vertex).clocks_per_vertex);
+                     const PreparedDraws& draws, const WhatIf& what_if)
+    : trace_(trace),
+      machine_(machine),
+      what_if_(what_if),
+      traffic_(machine, layout),
+      clocks_per_vertex_(draws.vertex_programs.size()) {
+  for (const DrawJob& job : draws.jobs) {
+    double& clocks = clocks_per_vertex_[job.vertex_program];
+    const auto& slots = draws.vertex_programs[job.vertex_program];
+    if (clocks == 0) clocks = clocks_of_vertex(trace, *job.draw, slots, machine.vertex, what_if);
+  }
 }
 
 double Stretches::agp_clocks(double bytes) const {
@@ -57,10 +62,17 @@ Clocks Stretches::next(const DrawJob& job, const Traffic& traffic, Position& at)
       blocks += quad.texel_block_count;
     }
   }
-  const double indices = 3 * triangles;
-  const double fetched = vertices * job.draw->vertex_stride;
-  clocks[kFetch] = std::max(indices / machine_.fetch.indices_per_clock, vertices);
+  const bool a_quad = reads_a_vertex_a_quad(what_if_);
+  const double indices = a_quad ? 0 : 3 * triangles;
+  const double read = a_quad ? vertices / 4 : vertices;
+  const double fetched = read * bytes_of_vertex(*job.draw, what_if_);
+  clocks[kFetch] = std::max(indices / machine_.fetch.indices_per_clock, read);
   clocks[kVertex] = vertices * clocks_per_vertex_[job.vertex_program] / machine_.vertex.units;
+  if (what_if_.point_sprites) {
+    clocks[kPrimitive] /= 2;
+    pieces /= 2;
+    vertices = read;
+  }
   clocks[kPrimitive] = std::max(clocks[kPrimitive], vertices);
   clocks[kSetup] = pieces * machine_.setup.clocks_per_triangle;
   clocks[kDepth] = quads / width;

@@ -8,6 +8,7 @@
 #include "model/machine/machine.h"
 #include "sim/draw_jobs.h"
 #include "sim/fidelity/traffic.h"
+#include "sim/fidelity/what_if.h"
 
 namespace splatscope::sim {
 
@@ -41,7 +42,7 @@ class Stretches {
  public:
   // All outlive it.
   Stretches(const Trace& trace, const Machine& machine, const MemoryLayout& layout,
-            const PreparedDraws& draws);
+            const PreparedDraws& draws, const WhatIf& what_if = {});
 
   // Draws and clears in the order of the trace. Of a draw, its stretches of kStretch triangles in order; the
   // last may be shorter.
@@ -58,6 +59,7 @@ class Stretches {
 
   const Trace& trace_;
   const Machine& machine_;
+  const WhatIf what_if_;
   TrafficCounter traffic_;
   std::vector<double> clocks_per_vertex_;  // by program
 };

@@ -12,12 +12,13 @@ namespace {
 
 class Estimate {
  public:
-  Estimate(const Trace& trace, std::span<const DrawWork> work, const Machine& machine)
+  Estimate(const Trace& trace, std::span<const DrawWork> work, const Machine& machine, const WhatIf& what_if)
       : trace_(trace),
         machine_(machine),
+        what_if_(what_if),
         layout_(lay_out(trace, machine)),
         draws_(prepare_draws(trace, work, machine, layout_)),
-        stretches_(trace, machine, layout_, draws_) {}
+        stretches_(trace, machine, layout_, draws_, what_if) {}
 
   Result result() {
     Result result;
@@ -61,7 +62,18 @@ class Estimate {
     cycles_ += memory_clocks(bytes, machine_);
   }
 
+  void add_division() {
+    const double bytes = 2.0 * layout_.color.bytes();
+    const double clocks = std::max(
+        whole_clocks(static_cast<double>(trace_.width) * trace_.height, what_if_.divided_pixels_per_clock),
+        memory_clocks(bytes, machine_));
+    busy_[kCommand] += clocks;
+    busy_[kMemory] += memory_clocks(bytes, machine_);
+    cycles_ += clocks;
+  }
+
   void add_normalization() {
+    if (what_if_.divided_pixels_per_clock > 0) return add_division();
     const Machine::Host& host = machine_.host;
     const int bytes = static_cast<int>(layout_.color.bytes_per_pixel);
     const double read = whole_clocks(bytes, host.uncached_read_bytes) * host.uncached_read_nanoseconds;
@@ -111,6 +123,7 @@ class Estimate {
 
   const Trace& trace_;
   const Machine& machine_;
+  const WhatIf& what_if_;
   MemoryLayout layout_;
   PreparedDraws draws_;
   Stretches stretches_;
@@ -120,8 +133,9 @@ class Estimate {
 
 }  // namespace
 
-Result estimate_throughput(const Trace& trace, std::span<const DrawWork> work, const Machine& machine) {
-  return Estimate(trace, work, machine).result();
+Result estimate_throughput(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                           const WhatIf& what_if) {
+  return Estimate(trace, work, machine, what_if).result();
 }
 
 }  // namespace splatscope::sim

@@ -5,6 +5,7 @@
 #include "model/command/commands.h"
 #include "model/machine/machine.h"
 #include "model/work/work.h"
+#include "sim/fidelity/what_if.h"
 #include "sim/simulate.h"
 
 namespace splatscope::sim {
@@ -16,6 +17,7 @@ namespace splatscope::sim {
 //
 // Of the result, `event_hash` is 0, `statistics` is empty, and a unit that is not busy is starved. Throws
 // like simulate().
-Result estimate_throughput(const Trace& trace, std::span<const DrawWork> work, const Machine& machine);
+Result estimate_throughput(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                           const WhatIf& what_if = {});
 
 }  // namespace splatscope::sim

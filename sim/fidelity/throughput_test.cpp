@@ -49,6 +49,35 @@ TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
   EXPECT_EQ(estimate.frame_cycles[0], estimate.cycles);
 }
 
+// Four corners from a vertex: what does not depend on the corner runs once.
+TEST(Throughput, WhatIfAVertexEmitsFourCorners) {
+  const Machine machine = machine::load("geforce4-ti4400");
+  RandomTrace made = testing::simple_trace(4000);
+  const auto vertex_clocks = [&](const WhatIf& what_if) {
+    const Result result = estimate_throughput(made.trace, made.work, machine, what_if);
+    return static_cast<double>(std::ranges::find(result.units, "vertex0", &UnitBooks::name)->busy);
+  };
+  const double as_in_2002 = vertex_clocks({});
+  const std::vector<std::uint32_t> nothing(made.trace.programs.size(), 0), everything(nothing.size(), ~0u);
+  EXPECT_NEAR(vertex_clocks({.corner_inputs = nothing}) / as_in_2002, 0.25, 0.01);
+  // Instructions of constants alone could run once; this program has none. The reload is saved.
+  EXPECT_LE(vertex_clocks({.corner_inputs = everything}), as_in_2002);
+  EXPECT_GT(vertex_clocks({.corner_inputs = everything}), 0.6 * as_in_2002);
+  EXPECT_NEAR(vertex_clocks({.point_sprites = true}) / as_in_2002, 0.25, 0.01);
+}
+
+TEST(Throughput, WhatIfAUnitDividesPixels) {
+  RandomTrace made = testing::simple_trace(10);
+  made.trace.commands.emplace_back(NormalizeOnHost{});
+  const Machine machine = machine::load("geforce4-ti4400");
+  const auto cycles = [&](int pixels) {
+    return estimate_throughput(made.trace, made.work, machine, {.divided_pixels_per_clock = pixels}).cycles;
+  };
+  const std::uint64_t pixels = std::uint64_t{made.trace.width} * made.trace.height;
+  EXPECT_NEAR(static_cast<double>(cycles(1) - cycles(2)), static_cast<double>(pixels) / 2, 1);
+  EXPECT_GT(cycles(0), 100 * cycles(4)) << "the host reads byte by byte";
+}
+
 // The same units, under the same names, are there and left out.
 TEST(Throughput, KnowsTheUnitsThatATraceNeeds) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
