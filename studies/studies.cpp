@@ -3,6 +3,7 @@
 #include <array>
 
 #include "studies/alpha_texture.h"
+#include "studies/exploration.h"
 #include "studies/fidelity.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
@@ -20,6 +21,8 @@ std::span<const Study> own_studies() {
             study_software},
       Study{"alpha-texture", "the size of the alpha texture, for any cutoff (Ren 2002, Eq. 15 and 16)",
             study_alpha_texture},
+      Study{"exploration", "shorter programs, and the hardware that Ren 2002, section 9, wishes for",
+            study_exploration},
   };
   return kStudies;
 }

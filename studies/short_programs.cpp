@@ -1,0 +1,111 @@
+#include "studies/short_programs.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "kernels/splat_programs.h"
+#include "model/isa/analysis.h"
+#include "studies/reference_comparison.h"
+#include "traces/weight_capture.h"
+
+namespace splatscope::studies {
+namespace {
+
+bool is_live(const isa::Program& program) {
+  return std::ranges::none_of(isa::analyze(program).instructions, &isa::InstructionAnalysis::dead);
+}
+
+// The machine with colours, pixel unit and frame in binary32: what the program itself does to the picture.
+Machine in_float(std::string_view name) {
+  Machine machine = machine::load(std::string(name));
+  machine.numbers.color = ColorFormat::float32;
+  machine.numbers.combiner = CombinerFormat::float32;
+  machine.numbers.frame = FrameFormat::float32;
+  return machine;
+}
+
+// A scene by each program on one machine. Its weights are captured once: without prefilter, they are the same
+// for all.
+class Drawing {
+ public:
+  Drawing(traces::Scene scene, Machine machine) : scene_(std::move(scene)), machine_(std::move(machine)) {
+    scene_.splatting.algorithm = traces::Algorithm::ewa_per_surfel;
+    weights_ = traces::capture_weights(scene_.surfels, scene_.splatting, scene_.capture, machine_.numbers);
+  }
+  FrameRun by(std::string_view program, Fidelity fidelity) {
+    const auto programs = kernels::ewa_programs();
+    scene_.splatting.ewa_program = static_cast<int>(
+        std::ranges::find(programs, program, &kernels::SplatProgram::name) - programs.begin());
+    return run_frame(traces::record(scene_, weights_).trace, machine_, fidelity);
+  }
+
+ private:
+  traces::Scene scene_;
+  Machine machine_;
+  traces::CapturedWeights weights_;
+};
+
+// As a screen shows it.
+Image shown(const Frame& frame) {
+  Image image = picture_of(frame);
+  for (auto& pixel : image.pixels) {
+    for (float& channel : pixel) channel = std::clamp(channel, 0.0f, 1.0f);
+  }
+  return image;
+}
+
+// dB of the picture by each program against the first.
+std::vector<double> psnr_by_program(Drawing drawing, std::span<const std::string_view> names) {
+  const Image first = shown(drawing.by(names[0], Fidelity::functional).rendered.frame);
+  std::vector<double> decibels;
+  for (const std::string_view name : names) {
+    decibels.push_back(psnr(shown(drawing.by(name, Fidelity::functional).rendered.frame), first));
+  }
+  return decibels;
+}
+
+}  // namespace
+
+Rate rate_of(const sim::Result& timing) {
+  const auto busiest = std::ranges::max_element(timing.units, {}, &sim::UnitBooks::busy);
+  return {timing.frames_per_second(), busiest->name,
+          static_cast<double>(busiest->busy) / static_cast<double>(timing.cycles)};
+}
+
+std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const std::string_view> names,
+                                     Fidelity fidelity, int surfels, const Progress& progress) {
+  const kernels::ReferencePicture reference = scene_reference(scene);
+  traces::Scene one_weight = scene;
+  one_weight.capture.corner_weights = false;
+  const auto apart = psnr_by_program({scene, in_float(kBothMachines[0])}, names);
+  const auto apart_one = psnr_by_program({one_weight, in_float(kBothMachines[0])}, names);
+  std::vector<ProgramRow> rows;
+  std::map<std::string_view, Drawing> drawings;
+  for (const std::string_view name : kBothMachines) {
+    drawings.emplace(name, Drawing(scene, machine::load(std::string(name))));
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const kernels::SplatProgram& splats = kernels::ewa_program(names[i]);
+    const isa::Program program = kernels::load_program(splats.file);
+    ProgramRow row{.name = names[i],
+                   .slots = isa::slot_count(program),
+                   .live = is_live(program),
+                   .rates = {},
+                   .ieee = kernels::splat_errors(splats, Arithmetic::ieee, 2002, surfels),
+                   .nv20 = kernels::splat_errors(splats, Arithmetic::nv20, 2003, surfels),
+                   .psnr_paper = apart[i],
+                   .psnr_paper_one_weight = apart_one[i],
+                   .psnr_reference = 0};
+    for (const std::string_view name : kBothMachines) {
+      const FrameRun run = drawings.at(name).by(names[i], fidelity);
+      row.rates.push_back(rate_of(*run.timing));
+      if (name == kBothMachines[0]) row.psnr_reference = psnr(run.rendered.frame, reference);
+    }
+    rows.push_back(std::move(row));
+    if (progress) progress(static_cast<double>(rows.size()) / static_cast<double>(names.size()));
+  }
+  return rows;
+}
+
+}  // namespace splatscope::studies
