@@ -45,8 +45,9 @@ struct SplatFragment {
   double weight = 0;  // rho_k at the pixel's centre
 };
 
-// Visits the fragments of `trace`, a recording of `scene` in one frame, which `rendered` drew with its work
-// recorded, in the order of drawing. Only surfels with a filter (kernels::surfel_filter) are visited.
+// Visits the fragments of `trace`, a recording of `scene` in one frame without hierarchy, which `rendered`
+// drew with its work recorded, in the order of drawing. Only surfels with a filter (kernels::surfel_filter)
+// are visited.
 void for_each_fragment(const traces::Scene& scene, const Trace& trace, const Rendered& rendered,
                        const VisibleSurface& surface, const std::function<void(const SplatFragment&)>& visit);
 

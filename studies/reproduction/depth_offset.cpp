@@ -24,6 +24,9 @@ OffsetRun run_with_offset(traces::Scene scene, traces::DepthOffsetScheme scheme,
                           const VisibleSurface& surface) {
   scene.splatting.depth_offset = z_t;
   scene.splatting.depth_offset_scheme = scheme;
+  // Fragments are found by their surfels' order, and the rule knows no front.
+  scene.hierarchy.culling = traces::Culling::none;
+  scene.splatting.faces = traces::Faces::both;
   Trace trace = traces::record(scene, weights).trace;
   RenderOptions options;
   options.formats = machine.numbers;
