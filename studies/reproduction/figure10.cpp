@@ -211,8 +211,8 @@ std::vector<GammaRow> sweep_gamma(const traces::Scene& scene, std::span<const do
     changed.splatting.gamma = gamma;
     const traces::CapturedWeights equal = unnormalized(scene, gamma);
     const Trace sums =
-        traces::splat_trace(scene.surfels, traces::view_of(scene.camera, scene.frame), changed.splatting,
-                            {.weights = equal.weights, .prefilter = false, .sum_weights = true});
+        traces::splat_trace({scene.surfels, equal.weights}, traces::view_of(scene.camera, scene.frame),
+                            changed.splatting, {.prefilter = false, .sum_weights = true});
     const traces::CapturedWeights captured = capture(changed, machine);
     rows.push_back({gamma, saturated_share(run_frame(sums, machine, Fidelity::functional).rendered.frame),
                     clamped_share(captured, gamma),

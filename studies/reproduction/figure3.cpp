@@ -45,8 +45,8 @@ double mean_radius(const traces::Scene& scene) {
 Frame draw_quads(traces::Scene scene, double side, const Machine& machine) {
   for (traces::Surfel& surfel : scene.surfels) surfel.radius *= static_cast<float>(0.5 * side);
   const std::vector<traces::VertexWeights> weights(scene.surfels.size());
-  Trace trace = traces::splat_trace(scene.surfels, traces::view_of(scene.camera, scene.frame),
-                                    scene.splatting, {.weights = weights});
+  Trace trace = traces::splat_trace({scene.surfels, weights}, traces::view_of(scene.camera, scene.frame),
+                                    scene.splatting, {});
   std::erase_if(trace.commands, [](const Command& command) {
     const Draw* draw = std::get_if<Draw>(&command);
     return draw != nullptr && draw->state.color_write;
