@@ -80,8 +80,9 @@ TEST(Recorder, RefinesAFramePerSurfelByOnePerPixel) {
       refined += std::abs(then[i] - wanted[i]);
     }
   }
-  // The weights differ, and 8-bit sums with them.
-  EXPECT_LT(refined / static_cast<double>(3 * frames[0].depth.size()), 1.0 / 255);
+  // The weights differ: each frame sums some twenty splats rounded to 8 bits, about 1.3/255 off, and the
+  // division by gamma makes it more.
+  EXPECT_LT(refined / static_cast<double>(3 * frames[0].depth.size()), 2.5 / 255);
   EXPECT_LT(refined, 0.2 * moved) << "gamma is gone, and with it what is darker at the edges";
 }
 
