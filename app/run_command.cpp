@@ -29,7 +29,7 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
   std::cout << fmt::format("{} on {}\n", input.name, machine.title);
   if (input.recorded)
     std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels, traces::describe(input.skipped));
-  if (input.recorded && input.recorded->blocks.drawn > 0)
+  if (input.recorded && !input.recorded->blocks.surfels_by_level.empty())
     std::cout << fmt::format("  {}\n", traces::describe(input.recorded->blocks));
   if (input.recorded && input.recorded->weights_captured > 0)
     std::cout << fmt::format(

@@ -107,9 +107,10 @@ Json mesh_json(const traces::MeshCounts& mesh) {
 }
 
 Json blocks_json(const traces::BlockCounts& blocks) {
-  return {{"drawn", blocks.drawn},
-          {"outside_frustum", blocks.outside_frustum},
-          {"facing_away", blocks.facing_away}};
+  return {{"drawn", blocks.blocks},
+          {"surfels_by_level", blocks.surfels_by_level},
+          {"surfels_outside_frustum", blocks.outside_frustum},
+          {"surfels_facing_away", blocks.facing_away}};
 }
 
 Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped) {

@@ -85,6 +85,9 @@ struct Capture {
 struct Hierarchy {
   Culling culling = Culling::none;  // of a Scene, never automatic
   int block_surfels = 0;            // layered depth pixels of a block
+  bool levels = false;              // coarser ones where they have enough surfels; false: the finest alone
+  double surfels_per_pixel = 0;     // as many are enough
+  bool progressive = false;         // several frames, from the coarsest level on
 };
 
 // Surfels that were left out while loading, by the first reason that held.

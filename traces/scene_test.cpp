@@ -89,6 +89,9 @@ faces = "front"
 [hierarchy]
 culling = "off"
 block_surfels = 64
+level = "auto"
+surfels_per_pixel = 0.5
+progressive = true
 [capture]
 views = 5
 frame_size = 100
@@ -120,6 +123,9 @@ box_max = [1, 2, 3]
   EXPECT_EQ(s.splatting.faces, Faces::front);
   EXPECT_EQ(s.hierarchy.culling, Culling::off);
   EXPECT_EQ(s.hierarchy.block_surfels, 64);
+  EXPECT_TRUE(s.hierarchy.levels);
+  EXPECT_EQ(s.hierarchy.surfels_per_pixel, 0.5);
+  EXPECT_TRUE(s.hierarchy.progressive);
   EXPECT_EQ(s.capture.views, 5);
   EXPECT_EQ(s.capture.frame_size, 100);
   EXPECT_FALSE(s.capture.corner_weights);

@@ -16,11 +16,13 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 // Facing is decided on the rasteriser's grid, of 1/16 pixel on both machines. A quad whose sides are `size`
 // pixels long when it faces the eye has twice a triangle's area size^2 cos. Rounding moves each corner by
 // 1/32 at most in x and y, the area by that times the sum of the edges in the taxicab norm, 4 size, and by
-// 6/32^2: only beyond this cosine the quad cannot turn round. The rest is for the rounding of the vertex
-// programs.
+// 6/32^2: only beyond this cosine the quad cannot turn round. 0.01 is for the rounding of the vertex
+// programs. No less than kCosine, which is enough for quads of 0.95 pixels: the same blocks whatever the size
+// of the frame, so that frame rates by resolution compare pixels.
 double turning_cosine(double size) {
   constexpr double kStep = 1.0 / 32;
-  return 0.01 + (4 * kStep + 6 * kStep * kStep / size) / size;
+  constexpr double kCosine = 0.15;
+  return std::max(kCosine, 0.01 + (4 * kStep + 6 * kStep * kStep / size) / size);
 }
 
 // Of what Eq. 12 and 14 give: for the other vertex programs, whose parallelograms about the same ellipse
@@ -58,9 +60,7 @@ BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View
   Placed placed;
   double distance = 0;  // largest
   for (std::size_t i = 0; i < placed.corners.size(); ++i) {
-    const glm::dvec3 corner =
-        view.camera_space({(i & 1 ? block.high : block.low).x, (i & 2 ? block.high : block.low).y,
-                           (i & 4 ? block.high : block.low).z});
+    const glm::dvec3 corner = view.camera_space(block.corner(i));
     placed.corners[i] = corner;
     placed.nearest = std::min(placed.nearest, corner.z);
     placed.furthest = std::max(placed.furthest, corner.z);

@@ -178,14 +178,13 @@ void make_blocks(const LdcTree& tree, const Coded& coded, int edge_bits, TreeLev
     Block block;
     block.first = static_cast<std::uint32_t>(first);
     block.count = static_cast<std::uint32_t>(end - first);
-    const std::uint32_t below =
-        std::accumulate(coded.stands_for.begin() + static_cast<std::ptrdiff_t>(first),
-                        coded.stands_for.begin() + static_cast<std::ptrdiff_t>(end), 0u);
-    const auto all = std::span(finest).subspan(finest_first, below);
+    block.below = std::accumulate(coded.stands_for.begin() + static_cast<std::ptrdiff_t>(first),
+                                  coded.stands_for.begin() + static_cast<std::ptrdiff_t>(end), 0u);
+    const auto all = std::span(finest).subspan(finest_first, block.below);
     const auto own = std::span(level.surfels).subspan(first, end - first);
     bound_box(all, own, block);
     bound_cones(all, own, block);
-    finest_first += below;
+    finest_first += block.below;
     level.blocks.push_back(block);
   });
 }

@@ -17,6 +17,7 @@ struct Block {
   std::uint32_t count = 0;
   std::uint32_t first_child = 0;  // blocks of the next finer level; none at the finest
   std::uint32_t children = 0;
+  std::uint32_t below = 0;  // surfels of the finest level that it stands for
   // Of its surfels and of all below it, so that what culls a block culls what it stands for. Object units.
   glm::dvec3 low{}, high{};  // box of the centres
   double least_radius = 0, greatest_radius = 0;
@@ -31,6 +32,10 @@ struct Block {
   glm::dvec3 behind{}, before{};
 
   glm::dvec3 middle() const { return 0.5 * (low + high); }
+  // Of the box, 0 to 7; i and 7 - i are opposite.
+  glm::dvec3 corner(std::size_t i) const {
+    return {(i & 1 ? high : low).x, (i & 2 ? high : low).y, (i & 4 ? high : low).z};
+  }
 };
 
 struct TreeLevel {
