@@ -21,6 +21,7 @@ void add_sample_command(CLI::App& app, Invocation& invocation);
 void add_scene_command(CLI::App& app);
 void add_shader_command(CLI::App& app);
 void add_study_command(CLI::App& app, Invocation& invocation);
+void add_sweep_command(CLI::App& app, Invocation& invocation);
 void add_trace_command(CLI::App& app);
 
 }  // namespace splatscope::app

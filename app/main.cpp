@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
   add_reproduce_command(app, invocation);
   add_run_command(app, invocation);
   add_study_command(app, invocation);
+  add_sweep_command(app, invocation);
   add_record_command(app, invocation);
   add_sample_command(app, invocation);
   add_machine_command(app);

@@ -32,23 +32,23 @@ std::string picture_name(std::size_t number, std::size_t frames) {
   return number + 1 == frames ? "frame.png" : fmt::format("frame-{:03}.png", number);
 }
 
-Json frames_json(const FrameRun& run, std::size_t frames) {
+Json frames_json(const sim::Result& timing) {
   Json out = Json::array();
-  for (std::size_t i = 0; i < frames; ++i) {
-    Json frame = {{"picture", picture_name(i, frames)}};
-    if (run.timing) {
-      const sim::Cycle cycles = run.timing->frame_cycles[i];
-      const double seconds = run.timing->seconds_of(cycles);
-      frame["cycles"] = cycles;
-      frame["milliseconds"] = 1000 * seconds;
-      frame["frames_per_second"] = 1 / seconds;
-      if (run.timing->cycles_plus_minus > 0) {  // of the whole run
-        frame["cycles_plus_minus"] = run.timing->cycles_plus_minus;
-      }
-      frame["event_hash"] = fmt::format("{:016x}", run.timing->event_hash);  // of the whole run
-    }
+  for (const sim::Cycle cycles : timing.frame_cycles) {
+    const double seconds = timing.seconds_of(cycles);
+    Json frame = {{"cycles", cycles}, {"milliseconds", 1000 * seconds}, {"frames_per_second", 1 / seconds}};
+    // Both of the whole run.
+    if (timing.cycles_plus_minus > 0) frame["cycles_plus_minus"] = timing.cycles_plus_minus;
+    frame["event_hash"] = fmt::format("{:016x}", timing.event_hash);
     out.push_back(std::move(frame));
   }
+  return out;
+}
+
+// With the names of the pictures.
+Json frames_json(const FrameRun& run, std::size_t frames) {
+  Json out = run.timing ? frames_json(*run.timing) : Json(std::vector<Json>(frames, Json::object()));
+  for (std::size_t i = 0; i < frames; ++i) out[i]["picture"] = picture_name(i, frames);
   return out;
 }
 
@@ -65,6 +65,13 @@ Json units_json(const sim::Result& timing) {
                      {"blocked_by", blocked_by}});
   }
   return units;
+}
+
+Json left_out_json(const sim::Result& timing) {
+  Json out = Json::array();
+  for (const sim::UnitLeftOut& unit : timing.units_left_out)
+    out.push_back({{"name", unit.name}, {"why", unit.why}});
+  return out;
 }
 
 Json counters_json(const RenderCounters& c) {
@@ -166,8 +173,8 @@ Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& n
   return {scene.name, std::move(recording.trace), recording.counts, scene.skipped, scene.mesh};
 }
 
-sim::Result time(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
-                 Fidelity fidelity, const TimingOptions& options, const Progress& progress) {
+sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                       Fidelity fidelity, const TimingOptions& options, const Progress& progress) {
   switch (fidelity) {
     case Fidelity::throughput:
       return sim::estimate_throughput(trace, work, machine);
@@ -195,7 +202,8 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
                {}};
   if (options.record_work) {
     const auto timing_start = std::chrono::steady_clock::now();
-    run.timing = time(trace, run.rendered.work, machine, fidelity, timing, part(progress, kFunctionShare, 1));
+    run.timing =
+        time_frame(trace, run.rendered.work, machine, fidelity, timing, part(progress, kFunctionShare, 1));
     run.timing_seconds = seconds_since(timing_start);
     run.rendered.work = {};
   }
@@ -221,6 +229,12 @@ GrayImage depth_of(const Frame& frame) {
   return image;
 }
 
+nlohmann::ordered_json timing_json(const sim::Result& timing) {
+  return {{"frames", frames_json(timing)},
+          {"units", units_json(timing)},
+          {"units_left_out", left_out_json(timing)}};
+}
+
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
                                   const FrameRun& run) {
   Json results;
@@ -234,12 +248,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
         {{"name", program.name}, {"slots", isa::slot_count(isa::load(program.text, program.name))}});
   }
   results["units"] = run.timing ? units_json(*run.timing) : Json::array();
-  results["units_left_out"] = Json::array();
-  if (run.timing) {
-    for (const sim::UnitLeftOut& unit : run.timing->units_left_out) {
-      results["units_left_out"].push_back({{"name", unit.name}, {"why", unit.why}});
-    }
-  }
+  results["units_left_out"] = run.timing ? left_out_json(*run.timing) : Json::array();
   results["counters"] = counters_json(run.rendered.counters);
   if (run.timing) results["statistics"] = statistics_json(*run.timing);
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);

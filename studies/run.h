@@ -4,6 +4,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -62,6 +63,10 @@ struct TimingOptions {
   std::span<sim::Observer* const> observers = {};  // watch a run that is simulated (cycle, referee)
 };
 
+// The time of a frame whose function gave `work`, by any fidelity but functional.
+sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                       Fidelity fidelity, const TimingOptions& options = {}, const Progress& progress = {});
+
 // The records of work are dropped once they are simulated.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const Progress& progress = {}, const OnFrame& on_frame = {},
@@ -70,6 +75,10 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
 // The picture with its alpha set to 1, and the depths.
 Image picture_of(const Frame& frame);
 GrayImage depth_of(const Frame& frame);
+
+// The figures of a time: `frames`, `units` and `units_left_out`, as the documentation of result files lists
+// them.
+nlohmann::ordered_json timing_json(const sim::Result& timing);
 
 // The figures of a run, as the documentation of result files lists them.
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,

@@ -217,6 +217,13 @@ void write_trace(const Trace& trace, const std::filesystem::path& path) {
   write_file(path, std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize())));
 }
 
+std::vector<std::byte> trace_bytes(const Trace& trace) {
+  fb::FlatBufferBuilder builder(stored_size(trace));
+  pack(builder, trace);
+  const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
+  return {bytes.begin(), bytes.end()};
+}
+
 Trace read_trace(const std::filesystem::path& path) {
   const std::string file = path.string();
   const std::vector<std::uint8_t> bytes = read_bytes(path);

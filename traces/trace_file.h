@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "model/command/commands.h"
 
@@ -15,6 +17,9 @@ inline constexpr std::uint32_t kTraceVersion = 2;
 // The file appears whole or not at all. Throws UserError where the trace breaks a rule of check_trace or the
 // place cannot be written.
 void write_trace(const Trace& trace, const std::filesystem::path& path);
+
+// The bytes of such a file, without a check: traces of the same content have the same.
+std::vector<std::byte> trace_bytes(const Trace& trace);
 
 // Throws UserError where the file cannot be read, is damaged, newer than this program, or breaks a rule of
 // check_trace. The memory taken is at most a small multiple of the file's size.

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/commands.h"
+#include "app/progress_bar.h"
+#include "studies/sweep.h"
+#include "traces/output_files.h"
+
+namespace splatscope::app {
+namespace {
+
+struct Options {
+  std::string input;
+  std::string machine = "geforce4-ti4400";
+  std::string fidelity = "cycle";
+  std::vector<std::string> settings;
+  std::vector<std::string> swept;
+  std::optional<std::string> cache;
+  std::string out = "out";
+};
+
+void print(const studies::Sweep& sweep) {
+  for (const studies::SweepPoint& point : sweep.points) {
+    std::string settings;
+    for (const auto& [key, value] : point.settings) settings += fmt::format("{}={}  ", key, value);
+    for (const auto& frame : point.results["frames"]) {
+      fmt::print("{}{} cycles  {:.2f} fps\n", settings, frame["cycles"].get<std::uint64_t>(),
+                 frame["frames_per_second"].get<double>());
+    }
+  }
+  for (const auto& path : sweep.damaged)
+    fmt::print("{}: damaged or of another format; computed again\n", path.string());
+}
+
+void run(const Options& options, bool quiet) {
+  Machine machine = machine::load(options.machine);
+  for (const std::string& assignment : options.settings) machine::set(machine, assignment);
+  const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
+  std::vector<studies::SweptParameter> swept;
+  for (const std::string& text : options.swept) swept.push_back(studies::swept_parameter(text));
+  traces::prepare_output_folder(options.out);
+  ProgressBar running("running", quiet);
+  const studies::Sweep sweep =
+      studies::run_sweep(options.input, machine, swept, fidelity, options.cache, running.callback());
+  running.clear();
+  traces::write_file(std::filesystem::path(options.out) / "results.json",
+                     studies::results_of(sweep, machine, fidelity).dump(1) + "\n");
+  print(sweep);
+  fmt::print("{:.1f} s; results.json in {}\n", sweep.host_seconds, options.out);
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app, Invocation& invocation) {
+  CLI::App* command =
+      app.add_subcommand("sweep", "one frame on many machines: its function once, its time on each");
+  const auto options = std::make_shared<Options>();
+  command->add_option("INPUT", options->input, "scene file (TOML), name of a ready scene, or FILE.trace")
+      ->required();
+  command
+      ->add_option("--sweep", options->swept,
+                   "KEY=VALUE,VALUE,...: a parameter of the machine; several give every combination")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
+      ->capture_default_str();
+  command->add_option("--fidelity", options->fidelity, "throughput, sampled, cycle or referee")
+      ->capture_default_str();
+  command->add_option("--set", options->settings, "KEY=VALUE: a parameter of all machines")
+      ->allow_extra_args(false);
+  command->add_option("--cache", options->cache,
+                      "folder that keeps what the function of a frame gives the timing, for later sweeps");
+  command->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  command->footer(
+      "Example: splatscope sweep checkerboard-ewa-per-surfel --sweep vertex.units=1,2,3,4 --sweep "
+      "memory.channels=1,2,4 --out out/sweep");
+  command->callback([options, &invocation] { run(*options, invocation.quiet); });
+}
+
+}  // namespace splatscope::app

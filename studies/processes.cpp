@@ -1,0 +1,136 @@
+#include "studies/processes.h"
+
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+
+namespace splatscope::studies {
+namespace {
+
+// Before each answer on the pipe.
+struct Head {
+  std::uint64_t number = 0;
+  std::uint64_t size = 0;
+  bool failed = false;
+};
+
+void write_all(int file, const void* data, std::size_t size) {
+  const char* bytes = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = ::write(file, bytes, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) ::_exit(1);  // nobody listens any more
+    bytes += written;
+    size -= static_cast<std::size_t>(written);
+  }
+}
+
+// False at the end.
+bool read_all(int file, void* data, std::size_t size) {
+  char* bytes = static_cast<char*>(data);
+  while (size > 0) {
+    const ssize_t got = ::read(file, bytes, size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    bytes += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+void answer(int file, std::size_t number, const std::string& text, bool failed) {
+  const Head head{number, text.size(), failed};
+  write_all(file, &head, sizeof head);
+  write_all(file, text.data(), text.size());
+}
+
+// What a child does: every `step`-th task.
+[[noreturn]] void work(int file, std::size_t first, std::size_t step, std::size_t count,
+                       const std::function<std::string(std::size_t)>& task) {
+  for (std::size_t number = first; number < count; number += step) {
+    try {
+      answer(file, number, task(number), false);
+    } catch (const std::exception& error) {
+      answer(file, number, error.what(), true);
+    }
+  }
+  ::_exit(0);
+}
+
+class Child {
+ public:
+  Child(std::size_t first, std::size_t step, std::size_t count,
+        const std::function<std::string(std::size_t)>& task) {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+    process_ = ::fork();
+    if (process_ < 0) throw std::system_error(errno, std::generic_category(), "fork");
+    if (process_ == 0) {
+      ::close(ends[0]);
+      work(ends[1], first, step, count, task);
+    }
+    ::close(ends[1]);
+    file_ = ends[0];
+  }
+  // One whose answers are no longer wanted finds its pipe closed.
+  ~Child() {
+    ::close(file_);
+    ::waitpid(process_, nullptr, 0);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  int file() const { return file_; }
+
+ private:
+  pid_t process_ = -1;
+  int file_ = -1;
+};
+
+}  // namespace
+
+std::vector<std::string> in_processes(std::size_t count, std::size_t processes,
+                                      const std::function<std::string(std::size_t)>& task,
+                                      const std::function<void(std::size_t)>& done) {
+  std::fflush(nullptr);  // or each child has a copy of what waits to be printed
+  const std::size_t children_count = std::clamp<std::size_t>(processes, 1, std::max<std::size_t>(count, 1));
+  std::vector<std::unique_ptr<Child>> children;
+  for (std::size_t i = 0; i < children_count; ++i)
+    children.push_back(std::make_unique<Child>(i, children_count, count, task));
+  std::vector<pollfd> open;
+  for (const auto& child : children) open.push_back({child->file(), POLLIN, 0});
+  std::vector<std::string> answers(count);
+  std::size_t answered = 0;
+  while (!open.empty()) {
+    if (::poll(open.data(), open.size(), -1) < 0 && errno != EINTR)
+      throw std::system_error(errno, std::generic_category(), "poll");
+    for (std::size_t i = open.size(); i-- > 0;) {
+      if (open[i].revents == 0) continue;
+      Head head;
+      std::string text;
+      if (read_all(open[i].fd, &head, sizeof head)) {
+        text.resize(head.size);
+        if (read_all(open[i].fd, text.data(), text.size())) {
+          if (head.failed) throw std::runtime_error(text);
+          answers[head.number] = std::move(text);
+          ++answered;
+          if (done) done(answered);
+          continue;
+        }
+      }
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+  if (answered != count) throw std::runtime_error("a process of the sweep ended early");
+  return answers;
+}
+
+}  // namespace splatscope::studies

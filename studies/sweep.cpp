@@ -1,0 +1,162 @@
+#include "studies/sweep.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include "model/error.h"
+#include "studies/processes.h"
+
+namespace splatscope::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostPoints = 100000;
+
+// Machines of a sweep that have their function in common.
+struct Group {
+  Machine machine;  // one of them
+  std::vector<std::size_t> points;
+};
+
+std::vector<SweepPoint> combine(const std::vector<SweptParameter>& parameters) {
+  std::vector<SweepPoint> points(1);
+  for (const SweptParameter& parameter : parameters) {
+    std::vector<SweepPoint> longer;
+    if (points.size() * parameter.values.size() > kMostPoints)
+      throw UserError("--sweep", 0, fmt::format("more than {} machines, expected fewer values", kMostPoints));
+    for (const SweepPoint& point : points) {
+      for (const std::string& value : parameter.values) {
+        longer.push_back(point);
+        longer.back().settings.emplace_back(parameter.key, value);
+      }
+    }
+    points = std::move(longer);
+  }
+  return points;
+}
+
+Machine machine_of(const Machine& machine, const SweepPoint& point) {
+  Machine changed = machine;
+  for (const auto& [key, value] : point.settings) machine::set(changed, key + "=" + value);
+  return changed;
+}
+
+// Of machines whose frames are the same, bit for bit. All values are checked on the way.
+std::vector<Group> group(const Machine& machine, const std::vector<SweepPoint>& points) {
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Machine changed = machine_of(machine, points[i]);
+    const auto same = std::ranges::find_if(groups, [&](const Group& g) {
+      return g.machine.numbers == changed.numbers &&
+             g.machine.vertex.cache_entries == changed.vertex.cache_entries;
+    });
+    if (same != groups.end()) {
+      same->points.push_back(i);
+    } else {
+      groups.push_back({changed, {i}});
+    }
+  }
+  return groups;
+}
+
+WorkStream compute(const Trace& trace, const RenderOptions& options) {
+  Rendered rendered = render(trace, options);
+  return {std::move(rendered.work), rendered.counters};
+}
+
+// From the cache where there is one that holds it.
+WorkStream work_of(const Trace& trace, const Machine& machine,
+                   const std::optional<std::filesystem::path>& folder, Sweep& sweep) {
+  RenderOptions options;
+  options.formats = machine.numbers;
+  options.vertex_cache_entries = machine.vertex.cache_entries;
+  if (!folder) {
+    ++sweep.functions;
+    return compute(trace, options);
+  }
+  const WorkCache cache(*folder);
+  const std::string key = work_key(trace, options);
+  WorkStream stream;
+  const WorkCache::Found found = cache.read(key, stream);
+  if (found == WorkCache::Found::yes) {
+    ++sweep.from_cache;
+    return stream;
+  }
+  if (found == WorkCache::Found::damaged) sweep.damaged.push_back(cache.path_of(key));
+  ++sweep.functions;
+  stream = compute(trace, options);
+  cache.write(key, stream);
+  return stream;
+}
+
+}  // namespace
+
+SweptParameter swept_parameter(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  SweptParameter parameter;
+  if (equals != std::string_view::npos) {
+    parameter.key = text.substr(0, equals);
+    std::string_view rest = text.substr(equals + 1);
+    while (!rest.empty()) {
+      const std::size_t comma = std::min(rest.find(','), rest.size());
+      parameter.values.emplace_back(rest.substr(0, comma));
+      rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+  }
+  if (parameter.key.empty() || parameter.values.empty())
+    throw UserError("--sweep", 0, fmt::format("\"{}\", expected KEY=VALUE,VALUE,...", text));
+  return parameter;
+}
+
+Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
+                const std::vector<SweptParameter>& parameters, Fidelity fidelity,
+                const std::optional<std::filesystem::path>& cache, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  if (fidelity == Fidelity::functional)
+    throw UserError("--fidelity", 0,
+                    "functional has no time to sweep, expected throughput, sampled, cycle or referee");
+  Sweep sweep;
+  sweep.points = combine(parameters);
+  const std::vector<Group> groups = group(machine, sweep.points);
+  const auto opened = open_input(scene_or_trace);
+  std::size_t done = 0;
+  for (const Group& same : groups) {
+    sweep.input = make_input(opened, scene_or_trace, same.machine);
+    const Trace& trace = sweep.input.trace;
+    const WorkStream stream = work_of(trace, same.machine, cache, sweep);
+    const auto time_one = [&](std::size_t i) {
+      const Machine timed = machine_of(machine, sweep.points[same.points[i]]);
+      return timing_json(time_frame(trace, stream.work, timed, fidelity)).dump();
+    };
+    const auto answers =
+        in_processes(same.points.size(), std::thread::hardware_concurrency(), time_one, [&](std::size_t n) {
+          if (progress) progress(static_cast<double>(done + n) / static_cast<double>(sweep.points.size()));
+        });
+    done += answers.size();
+    for (std::size_t i = 0; i < answers.size(); ++i)
+      sweep.points[same.points[i]].results = Json::parse(answers[i]);
+  }
+  sweep.host_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return sweep;
+}
+
+nlohmann::ordered_json results_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity) {
+  Json results = {{"input", sweep.input.name}, {"machine", machine.name}, {"fidelity", name(fidelity)}};
+  results["points"] = Json::array();
+  for (const SweepPoint& point : sweep.points) {
+    Json entry = {{"set", Json::object()}};
+    for (const auto& [key, value] : point.settings) entry["set"][key] = value;
+    entry.update(point.results);
+    results["points"].push_back(std::move(entry));
+  }
+  results["host"] = {{"seconds", sweep.host_seconds},
+                     {"functions_computed", sweep.functions},
+                     {"functions_from_cache", sweep.from_cache}};
+  return results;
+}
+
+}  // namespace splatscope::studies

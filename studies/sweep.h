@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/run.h"
+#include "studies/work_cache.h"
+
+// One frame, its function once, its timing on many machines.
+namespace splatscope::studies {
+
+// "vertex.units=1,2,4": a parameter and the values that it takes. Throws UserError (file "--sweep").
+struct SweptParameter {
+  std::string key;
+  std::vector<std::string> values;
+};
+SweptParameter swept_parameter(std::string_view text);
+
+// One machine of the sweep.
+struct SweepPoint {
+  std::vector<std::pair<std::string, std::string>> settings;  // by parameter
+  nlohmann::ordered_json results;  // as `frames`, `units` and `units_left_out` of a run's results
+};
+
+struct Sweep {
+  Input input;
+  std::vector<SweepPoint> points;
+  std::size_t functions = 0;                   // computed: one for each set of number formats
+  std::size_t from_cache = 0;                  // read from the cache instead
+  std::vector<std::filesystem::path> damaged;  // of the cache: computed again
+  double host_seconds = 0;
+};
+
+// Every combination of the values, the last parameter running fastest, on `machine`. Parameters that the
+// function depends on (numbers.*, vertex.cache_entries) may be swept too: it is then computed for each.
+// Timings run in as many processes as the host has threads.
+Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
+                const std::vector<SweptParameter>& parameters, Fidelity fidelity,
+                const std::optional<std::filesystem::path>& cache, const Progress& progress = {});
+
+nlohmann::ordered_json results_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity);
+
+}  // namespace splatscope::studies

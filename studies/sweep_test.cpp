@@ -1,0 +1,153 @@
+#include "studies/sweep.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "model/error.h"
+#include "studies/processes.h"
+#include "traces/trace_file.h"
+
+namespace splatscope::studies {
+namespace {
+
+// A folder of its own for each test, gone after it.
+class SweepFiles : public ::testing::Test {
+ protected:
+  SweepFiles() {
+    std::filesystem::create_directories(folder);
+    const traces::Scene scene = traces::parse_scene(
+        "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
+        "[capture]\nviews = 2\nframe_size = 64\n",
+        "plane");
+    trace = traces::record(scene, machine.numbers).trace;
+    traces::write_trace(trace, file);
+  }
+  ~SweepFiles() override { std::filesystem::remove_all(folder); }
+
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("splatscope-sweep-" + std::to_string(::getpid()));
+  std::filesystem::path file = folder / "plane.trace";
+  Machine machine = machine::load("geforce4-ti4400");
+  Trace trace;
+};
+
+using Sweeps = SweepFiles;
+using WorkCaches = SweepFiles;
+
+TEST_F(Sweeps, EveryPointIsWhatARunOfItsOwnSays) {
+  const Sweep sweep =
+      run_sweep(file, machine, {{"vertex.units", {"1", "3"}}, {"memory.channels", {"1", "2", "4"}}},
+                Fidelity::cycle, {});
+  ASSERT_EQ(sweep.points.size(), 6u);
+  EXPECT_EQ(sweep.functions, 1u);
+  for (const SweepPoint& point : sweep.points) {
+    Machine changed = machine;
+    for (const auto& [key, value] : point.settings) machine::set(changed, key + "=" + value);
+    const FrameRun run = run_frame(trace, changed, Fidelity::cycle);
+    EXPECT_EQ(point.results, timing_json(*run.timing));
+  }
+  const auto json = results_of(sweep, machine, Fidelity::cycle);
+  EXPECT_EQ(json["points"][5]["set"]["vertex.units"], "3");
+  EXPECT_EQ(json["points"][5]["set"]["memory.channels"], "4");
+}
+
+TEST_F(Sweeps, TheFunctionIsComputedForEachOfItsFormats) {
+  const Sweep sweep =
+      run_sweep(file, machine, {{"vertex.cache_entries", {"1", "18"}}, {"setup.latency", {"5", "6"}}},
+                Fidelity::cycle, {});
+  EXPECT_EQ(sweep.functions, 2u);
+  EXPECT_NE(sweep.points[0].results, sweep.points[2].results);
+}
+
+TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
+  const std::vector<SweptParameter> swept{{"vertex.units", {"1", "2"}}};
+  const std::filesystem::path cache = folder / "cache";
+  const auto sweep = [&] { return run_sweep(file, machine, swept, Fidelity::cycle, cache); };
+  const Sweep first = sweep();
+  EXPECT_EQ(first.functions, 1u);
+  EXPECT_EQ(first.from_cache, 0u);
+  const Sweep second = sweep();
+  EXPECT_EQ(second.functions, 0u);
+  EXPECT_EQ(second.from_cache, 1u);
+  EXPECT_EQ(second.points[1].results, first.points[1].results);
+
+  const std::filesystem::path stored = std::filesystem::directory_iterator(cache)->path();
+  std::fstream(stored, std::ios::in | std::ios::out | std::ios::binary).seekp(1000).put('!');
+  const Sweep third = sweep();
+  EXPECT_EQ(third.functions, 1u);
+  EXPECT_EQ(third.damaged, std::vector{stored});
+  EXPECT_EQ(third.points[1].results, first.points[1].results);
+  EXPECT_EQ(sweep().from_cache, 1u);
+}
+
+TEST_F(Sweeps, WrongInputIsAUsersError) {
+  EXPECT_THROW(swept_parameter("vertex.units"), UserError);
+  EXPECT_THROW(swept_parameter("=1,2"), UserError);
+  EXPECT_THROW(swept_parameter("vertex.units="), UserError);
+  EXPECT_EQ(swept_parameter("a=1,2,").values, (std::vector<std::string>{"1", "2"}));
+  EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1", "99"}}}, Fidelity::cycle, {}), UserError);
+  EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1"}}}, Fidelity::functional, {}), UserError);
+}
+
+TEST_F(WorkCaches, TheKeyIsOfWhatTheWorkDependsOn) {
+  RenderOptions options;
+  options.formats = machine.numbers;
+  const std::string key = work_key(trace, options);
+  EXPECT_EQ(key.size(), 32u);
+  EXPECT_EQ(key, work_key(traces::read_trace(file), options));
+  options.vertex_cache_entries = 17;
+  EXPECT_NE(key, work_key(trace, options));
+  options = {};
+  options.formats = machine.numbers;
+  options.formats.subpixel_bits = 8;
+  EXPECT_NE(key, work_key(trace, options));
+  options.formats = machine.numbers;
+  trace.buffers[0].bytes[5] ^= std::byte{1};
+  EXPECT_NE(key, work_key(trace, options));
+}
+
+TEST_F(WorkCaches, WhatIsCutShortIsNotTaken) {
+  const WorkCache cache(folder / "cache");
+  const Rendered rendered = render(trace, {});
+  cache.write("k", {rendered.work, rendered.counters});
+  WorkStream stream;
+  ASSERT_EQ(cache.read("k", stream), WorkCache::Found::yes);
+  ASSERT_EQ(stream.work.size(), rendered.work.size());
+  EXPECT_EQ(stream.work[0].shaded_vertices, rendered.work[0].shaded_vertices);
+  EXPECT_EQ(stream.work[0].quads.size(), rendered.work[0].quads.size());
+  EXPECT_EQ(stream.counters.fragments, rendered.counters.fragments);
+  EXPECT_EQ(cache.read("another", stream), WorkCache::Found::no);
+  const auto size = std::filesystem::file_size(cache.path_of("k"));
+  for (const std::uintmax_t left :
+       {size - 1, size / 2, std::uintmax_t{24}, std::uintmax_t{3}, std::uintmax_t{0}}) {
+    std::filesystem::resize_file(cache.path_of("k"), left);
+    EXPECT_EQ(cache.read("k", stream), WorkCache::Found::damaged) << left << " bytes";
+  }
+}
+
+TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {
+  std::size_t last = 0;
+  const auto answers = in_processes(
+      7, 3, [](std::size_t i) { return std::string(i * 100000, static_cast<char>('a' + i)); },
+      [&](std::size_t done) { last = done; });
+  ASSERT_EQ(answers.size(), 7u);
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    EXPECT_EQ(answers[i], std::string(i * 100000, static_cast<char>('a' + i)));
+  EXPECT_EQ(last, 7u);
+  EXPECT_TRUE(in_processes(0, 2, [](std::size_t) { return std::string("x"); }).empty());
+  EXPECT_THROW(in_processes(4, 2,
+                            [](std::size_t i) -> std::string {
+                              if (i == 2) throw std::runtime_error("two");
+                              return "x";
+                            }),
+               std::runtime_error);
+  EXPECT_THROW(in_processes(4, 2, [](std::size_t i) -> std::string { return i == 1 ? ::_exit(3), "" : "x"; }),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace splatscope::studies

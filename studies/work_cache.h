@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/command/commands.h"
+#include "model/render.h"
+#include "model/work/work.h"
+
+namespace splatscope::studies {
+
+// What the function of a trace gives the timing: computed once, timed by many machines.
+struct WorkStream {
+  std::vector<DrawWork> work;  // one for each Draw of the trace
+  RenderCounters counters;
+};
+
+// Names what a work stream depends on, and nothing else: the trace, the options, and the program that draws
+// (any other build computes it anew). 32 hexadecimal digits.
+std::string work_key(const Trace& trace, const RenderOptions& options);
+
+// Work streams in a folder, a file each, under their keys.
+class WorkCache {
+ public:
+  // Throws UserError where the folder cannot be made or written.
+  explicit WorkCache(std::filesystem::path folder);
+
+  enum class Found { yes, no, damaged };
+  // The stream of `key`, checked against its checksum. `damaged`: what stands there is of another format, cut
+  // short or changed; the caller computes it again.
+  Found read(const std::string& key, WorkStream& stream) const;
+  // Appears whole or not at all.
+  void write(const std::string& key, const WorkStream& stream) const;
+  std::filesystem::path path_of(const std::string& key) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace splatscope::studies
