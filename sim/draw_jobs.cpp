@@ -103,9 +103,9 @@ Needs needs_of(const Trace& trace) {
     for (const std::uint32_t buffer : {draw->vertex_buffer, draw->index_buffer}) {
       needs.agp |= trace.buffers[buffer].place == MemoryPlace::agp;
     }
-    needs.depth |= draw->state.depth_test || draw->state.depth_write;
+    needs.depth |= uses_depth(*draw);
     needs.color |= draw->state.color_write;
-    needs.texture |= draw->state.color_write && draw->texture.has_value();
+    needs.texture |= uses_texture(*draw);
   }
   return needs;
 }

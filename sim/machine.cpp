@@ -190,37 +190,36 @@ Items& connect_geometry(Builder& build, const Units& u, const Trace& trace, cons
   return set_up;
 }
 
-// Rasteriser, then what there is of depth test, texture unit, pixel unit and blending.
+// Rasteriser, then what there is of depth test, texture unit, pixel unit and blending, with ways past the
+// depth test and the texture unit for draws that do not use them.
 void connect_quads(Builder& build, const Units& u, Items& set_up, const Machine& spec,
                    const MemoryLayout& layout) {
-  Unit* first_of_color = u.texture ? static_cast<Unit*>(u.texture) : u.pixel;
-  Unit* after_raster = u.depth ? static_cast<Unit*>(u.depth) : first_of_color;
-  Items* quads = after_raster ? &build.channel<std::uint32_t>(*u.raster, *after_raster, spec.raster.queue,
-                                                              spec.raster.latency)
-                              : nullptr;
-  u.raster->connect(set_up, quads, u.depth != nullptr);
+  const auto way = [&](Unit* from, Unit* to, int capacity, int latency) {
+    return from && to ? &build.channel<std::uint32_t>(*from, *to, capacity, latency) : nullptr;
+  };
+  const auto from_raster = [&](Unit* to) {
+    return way(u.raster, to, spec.raster.queue, spec.raster.latency);
+  };
+  const auto from_depth = [&](Unit* to) { return way(u.depth, to, spec.depth.queue, spec.depth.latency); };
+  const QuadTargets after_raster{from_raster(u.depth), from_raster(u.texture), from_raster(u.pixel)};
+  const QuadTargets after_depth{nullptr, from_depth(u.texture), from_depth(u.pixel)};
+  u.raster->connect(set_up, after_raster);
   if (u.depth) {
-    Items* passed = first_of_color ? &build.channel<std::uint32_t>(*u.depth, *first_of_color,
-                                                                   spec.depth.queue, spec.depth.latency)
-                                   : nullptr;
     u.depth->connect(
-        *quads, passed,
+        *after_raster.depth, after_depth,
         build.video_port(*u.depth, u.memory, frame_reads(spec, layout.depth, spec.depth.pending)),
         layout.depth_address);
-    quads = passed;
   }
+  Quads* sampled = way(u.texture, u.pixel, spec.texture.queue, spec.texture.latency);
   if (u.texture) {
-    auto& sampled =
-        build.channel<std::uint32_t>(*u.texture, *u.pixel, spec.texture.queue, spec.texture.latency);
-    u.texture->connect(*quads, sampled,
+    u.texture->connect({after_raster.texture, after_depth.texture, nullptr}, *sampled,
                        build.video_port(*u.texture, u.memory, 4 * (spec.texture.pending + 1)));
-    quads = &sampled;
   }
   if (u.pixel) {
-    auto& shaded = build.channel<std::uint32_t>(*u.pixel, *u.blend, spec.pixel.queue, spec.pixel.latency);
-    u.pixel->connect(*quads, shaded);
+    Quads* shaded = way(u.pixel, u.blend, spec.pixel.queue, spec.pixel.latency);
+    u.pixel->connect({after_raster.pixel, after_depth.pixel, sampled}, *shaded);
     u.blend->connect(
-        shaded, build.video_port(*u.blend, u.memory, frame_reads(spec, layout.color, spec.blend.pending)),
+        *shaded, build.video_port(*u.blend, u.memory, frame_reads(spec, layout.color, spec.blend.pending)),
         layout.color_address);
   }
 }
@@ -269,9 +268,9 @@ void SimulatedMachine::run() {
 
 std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraws draws,
                                                 const MemoryLayout& layout, const Machine& spec,
-                                                Scheduler scheduler) {
+                                                Scheduler scheduler, UnitChoice choice) {
   auto machine = std::make_unique<SimulatedMachine>(spec, scheduler);
-  const Needs needs = needs_of(trace);
+  const Needs needs = choice == UnitChoice::all ? Needs{true, true, true, true} : needs_of(trace);
   machine->vertex_programs = std::move(draws.vertex_programs);
   machine->jobs = std::move(draws.jobs);
   machine->left_out = units_left_out(needs);

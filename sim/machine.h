@@ -46,9 +46,15 @@ struct SimulatedMachine {
   Cycle cycles() const { return core_cycle(host->finished_at()); }
 };
 
-// Creates the units that the trace needs and connects them. `draws`: of the trace.
+// Which units are created.
+enum class UnitChoice : std::uint8_t {
+  needed,  // by a draw of the trace
+  all      // of the machine: slower, and the same cycles
+};
+
+// Creates the units and connects them. `draws`: of the trace.
 std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraws draws,
                                                 const MemoryLayout& layout, const Machine& machine,
-                                                Scheduler scheduler);
+                                                Scheduler scheduler, UnitChoice choice = UnitChoice::needed);
 
 }  // namespace splatscope::sim

@@ -51,10 +51,11 @@ std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {
 }
 
 Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& spec, Scheduler scheduler,
-                const std::function<void(double)>& progress, std::span<Observer* const> observers) {
+                const std::function<void(double)>& progress, std::span<Observer* const> observers,
+                UnitChoice choice) {
   const MemoryLayout layout = lay_out(trace, spec);
   const auto machine =
-      build_machine(trace, prepare_draws(trace, work, spec, layout), layout, spec, scheduler);
+      build_machine(trace, prepare_draws(trace, work, spec, layout), layout, spec, scheduler, choice);
   const std::array<ClockDomain*, 2> domains{&machine->core, &machine->bus};
   if (progress) report_progress(*machine, progress);
   for (Observer* observer : observers) {

@@ -71,6 +71,6 @@ std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result);
 // does not fit the trace, or a deadlock, with what every unit and channel holds.
 Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                 Scheduler scheduler = Scheduler::skip_ahead, const std::function<void(double)>& progress = {},
-                std::span<Observer* const> observers = {});
+                std::span<Observer* const> observers = {}, UnitChoice choice = UnitChoice::needed);
 
 }  // namespace splatscope::sim

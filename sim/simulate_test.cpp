@@ -33,6 +33,31 @@ const UnitBooks* books_of(const Result& result, std::string_view unit) {
 
 class RandomTraces : public ::testing::TestWithParam<unsigned> {};
 
+// Draws go past units that they do not use, so it is the same whether these are there.
+TEST_P(RandomTraces, UnitsThatNoDrawNeedsChangeNothing) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  RandomMaker maker(GetParam());
+  const RandomTrace made = maker.trace();
+  const Machine machine = maker.machine();
+  const Result needed = simulate(made.trace, made.work, machine);
+  const Result all = simulate(made.trace, made.work, machine, Scheduler::skip_ahead, {}, {}, UnitChoice::all);
+  EXPECT_TRUE(all.units_left_out.empty());
+  EXPECT_EQ(all.units.size(), needed.units.size() + needed.units_left_out.size());
+  EXPECT_EQ(all.cycles, needed.cycles);
+  EXPECT_EQ(all.command_ends, needed.command_ends);
+  for (const UnitBooks& books : needed.units) {
+    const UnitBooks& same = *books_of(all, books.name);
+    EXPECT_EQ(same.busy, books.busy) << books.name;
+    EXPECT_EQ(same.starved, books.starved) << books.name;
+    EXPECT_EQ(same.blocked_by, books.blocked_by) << books.name;
+  }
+  for (const UnitLeftOut& unit : needed.units_left_out) {
+    EXPECT_EQ(books_of(all, unit.name)->busy, 0u) << unit.name;
+  }
+  for (const UnitStatistic& s : needed.statistics)
+    EXPECT_EQ(statistic(all, s.unit_name, s.name), s.value) << s.unit_name << "." << s.name;
+}
+
 TEST_P(RandomTraces, EveryItemOfTheWorkIsDoneOnce) {
   SCOPED_TRACE("seed " + std::to_string(GetParam()));
   RandomMaker maker(GetParam());

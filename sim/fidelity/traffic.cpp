@@ -35,7 +35,6 @@ void TrafficCounter::clear() {
 Traffic TrafficCounter::of(const DrawJob& job) {
   const DrawState& state = job.draw->state;
   const double depth_bytes = layout_.depth.line_bytes(), color_bytes = layout_.color.line_bytes();
-  const bool uses_depth = state.depth_test || state.depth_write;
   const auto blocks_a_line = static_cast<std::uint32_t>(machine_.texture.line_bytes / 16);
   CacheTags depth(machine_.depth.cache_lines, machine_.depth.cache_ways);
   CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);
@@ -52,7 +51,7 @@ Traffic TrafficCounter::of(const DrawJob& job) {
     if (writes_depth) cleared_[line] = 0;
     if (q / kRun % kRunsApart == 0) {
       ++quads;
-      if (uses_depth)
+      if (uses_depth(*job.draw))
         sum.depth += touch(depth, line, read_depth ? depth_bytes : 0, depth_bytes, writes_depth);
       if (is_colored(job, quad)) {
         ++colored;

@@ -11,21 +11,20 @@ DepthUnit::DepthUnit(std::string name, Completion& completion, const Machine::De
                 lines, quads_per_clock),
       cleared_(lines.lines(), false) {}
 
-void DepthUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port,
-                        std::uint32_t address) {
+void DepthUnit::connect(Quads& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address) {
   in_ = &in;
-  out_ = out;
+  targets_ = out;
   cache_.connect(port, address);
 }
 
 std::uint64_t DepthUnit::start(const DrawJob& job) {
   next_cut_ = 0;
-  return job.work->quads.size();
+  out_ = targets_.of(*job.draw);
+  return uses_depth(*job.draw) ? job.work->quads.size() : 0;
 }
 
 void DepthUnit::pass(const Cut& cut) {
   const DrawState& state = job().draw->state;
-  if (!state.depth_test && !state.depth_write) return;
   const auto writes = [&](const QuadWork& quad) { return state.depth_write && quad.passed != 0; };
   for (const QuadWork& quad : cut.quads) {
     if (writes(quad)) cleared_[lines_.line_of(quad)] = false;
@@ -55,16 +54,13 @@ bool DepthUnit::enter(Cycle now) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   const std::uint32_t number = in_->front();
   pass_cuts(number);
-  const DrawState& state = job().draw->state;
-  if (state.depth_test || state.depth_write) {
-    const QuadWork& quad = job().work->quads[number];
-    const std::uint32_t line = lines_.line_of(quad);
-    const bool writes = state.depth_write && quad.passed != 0;
-    in_the_way_ = cache_.touch(now, line, !cleared_[line], writes);
-    if (in_the_way_) return false;
-    if (writes) cleared_[line] = false;
-    ++tested_;
-  }
+  const QuadWork& quad = job().work->quads[number];
+  const std::uint32_t line = lines_.line_of(quad);
+  const bool writes = job().draw->state.depth_write && quad.passed != 0;
+  in_the_way_ = cache_.touch(now, line, !cleared_[line], writes);
+  if (in_the_way_) return false;
+  if (writes) cleared_[line] = false;
+  ++tested_;
   cache_.enter(in_->pop(now));
   return true;
 }

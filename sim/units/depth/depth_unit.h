@@ -4,19 +4,18 @@
 
 #include "model/machine/machine.h"
 #include "sim/units/cache/cached_unit.h"
+#include "sim/units/quad_paths.h"
 
 namespace splatscope::sim {
 
 // Tests quads against the depth buffer through a write-back cache, and sends on what passed and has colour.
-// Draws that neither test nor write depth pass through. Lines that a fast clear marked are made in the cache,
+// Lines that a fast clear marked are made in the cache,
 // not read. Not modelled: compression and hierarchical rejection of depth.
 class DepthUnit final : public FrameUnit {
  public:
   DepthUnit(std::string name, Completion& completion, const Machine::Depth& spec, const FrameLines& lines,
             int quads_per_clock);
-  // `out`: quads to texture or pixel unit; nullptr: no draw writes colour.
-  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, MemoryPort& port,
-               std::uint32_t address);
+  void connect(Quads& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address);
 
   std::vector<Statistic> statistics() const override;
 
@@ -29,6 +28,7 @@ class DepthUnit final : public FrameUnit {
   bool enter(Cycle now) override;
   void pass(const Cut& cut) override;
 
+  QuadTargets targets_;
   std::vector<bool> cleared_;  // by line: not in memory yet
   std::uint64_t tested_ = 0, passed_ = 0;
 };

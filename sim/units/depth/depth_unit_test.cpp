@@ -24,7 +24,7 @@ struct DepthBench {
         out((bench.add(sink), "out"), depth, sink, 8),
         memory(bench, depth, 40) {
     source.connect(in);
-    depth.connect(in, &out, memory.port, 0);
+    depth.connect(in, {nullptr, &out, &out}, memory.port, 0);
     sink.connect(out);
     depth.clear(cleared);
     bench.begin(draw.prepare(), {&depth});
@@ -91,15 +91,6 @@ TEST(DepthUnit, ReadOnlyLinesAreNotWrittenBack) {
   const DepthBench run(draw, {4, 4, 8, 4, 8, true}, false);
   for (const auto& [line, write] : run.traffic()) EXPECT_FALSE(write) << line;
   EXPECT_EQ(run.traffic().size(), 5u);
-}
-
-TEST(DepthUnit, DrawsWithoutDepthPassThrough) {
-  testing::TestDraw draw;
-  draw.draw.state.depth_test = draw.draw.state.depth_write = false;
-  draw.add_quad(0, 0);
-  const DepthBench run(draw, {32, 4, 8, 4, 8, true}, false);
-  EXPECT_EQ(run.sink.taken(), (Timed<std::uint32_t>{{3, 0u}}));
-  EXPECT_TRUE(run.traffic().empty());
 }
 
 }  // namespace

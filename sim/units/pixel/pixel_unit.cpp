@@ -5,17 +5,19 @@ namespace splatscope::sim {
 PixelUnit::PixelUnit(std::string name, Completion& completion, int quads_per_clock)
     : DrawUnit(std::move(name), completion), quads_per_clock_(quads_per_clock) {}
 
-void PixelUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out) {
-  in_ = &in;
+void PixelUnit::connect(const QuadSources& in, Quads& out) {
+  sources_ = in;
   out_ = &out;
 }
 
 std::uint64_t PixelUnit::start(const DrawJob& job) {
+  in_ = sources_.of(*job.draw);
   return job.colored_quads;
 }
 
 Step PixelUnit::advance(Cycle now) {
   if (free_from_ > now) return busy(free_from_);
+  if (!in_) return idle();  // before the first draw
   if (!in_->can_pop(now)) return nothing_to_take(in_->next_visible());
   if (!out_->can_push(now)) return blocked(out_->consumer(), out_->next_free());
   for (int i = 0; i < quads_per_clock_ && in_->can_pop(now) && out_->can_push(now); ++i) {

@@ -3,6 +3,7 @@
 #include "model/machine/machine.h"
 #include "sim/kernel/channel.h"
 #include "sim/units/draw_unit.h"
+#include "sim/units/quad_paths.h"
 
 namespace splatscope::sim {
 
@@ -10,7 +11,7 @@ namespace splatscope::sim {
 class PixelUnit final : public DrawUnit {
  public:
   PixelUnit(std::string name, Completion& completion, int quads_per_clock);
-  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out);
+  void connect(const QuadSources& in, Quads& out);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
@@ -19,7 +20,8 @@ class PixelUnit final : public DrawUnit {
   std::uint64_t start(const DrawJob& job) override;
 
   int quads_per_clock_;
-  Channel<std::uint32_t>* in_ = nullptr;
+  QuadSources sources_;
+  Quads* in_ = nullptr;  // of this draw
   Channel<std::uint32_t>* out_ = nullptr;
   Cycle free_from_ = 0;
   std::uint64_t quads_ = 0;

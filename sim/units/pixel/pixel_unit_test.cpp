@@ -21,7 +21,7 @@ Timed<std::uint32_t> shaded(std::uint64_t clocks, int quads_per_clock) {
     bench.add(*unit);
   Channel<std::uint32_t> in("in", source, pixel, 4), out("out", pixel, sink, 8, 16);
   source.connect(in);
-  pixel.connect(in, out);
+  pixel.connect({&in, nullptr, nullptr}, out);
   sink.connect(out);
   bench.begin(draw.prepare(), {&pixel});
   bench.run();

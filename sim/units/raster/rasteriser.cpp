@@ -8,14 +8,15 @@ Rasteriser::Rasteriser(std::string name, Completion& completion, const Machine::
                        int quads_per_clock)
     : DrawUnit(std::move(name), completion), spec_(spec), quads_per_clock_(quads_per_clock) {}
 
-void Rasteriser::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, bool all_quads) {
+void Rasteriser::connect(Channel<std::uint32_t>& in, const QuadTargets& out) {
   in_ = &in;
-  out_ = out;
-  all_quads_ = all_quads;
+  targets_ = out;
 }
 
 std::uint64_t Rasteriser::start(const DrawJob& job) {
   next_quad_ = 0;
+  out_ = targets_.of(*job.draw);
+  all_quads_ = uses_depth(*job.draw);
   return job.triangles_set_up;
 }
 

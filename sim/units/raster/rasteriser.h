@@ -3,6 +3,7 @@
 #include "model/machine/machine.h"
 #include "sim/kernel/channel.h"
 #include "sim/units/draw_unit.h"
+#include "sim/units/quad_paths.h"
 
 namespace splatscope::sim {
 
@@ -11,9 +12,8 @@ namespace splatscope::sim {
 class Rasteriser final : public DrawUnit {
  public:
   Rasteriser(std::string name, Completion& completion, const Machine::Raster& spec, int quads_per_clock);
-  // `out`: the numbers of the quads; nullptr: no draw tests depth or writes colour, and quads end here.
-  // `all_quads`: the depth test takes all; else only coloured quads go out.
-  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>* out, bool all_quads);
+  // The depth test takes all quads; past it only coloured ones go out.
+  void connect(Channel<std::uint32_t>& in, const QuadTargets& out);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
@@ -26,7 +26,8 @@ class Rasteriser final : public DrawUnit {
   Machine::Raster spec_;
   int quads_per_clock_;
   Channel<std::uint32_t>* in_ = nullptr;
-  Channel<std::uint32_t>* out_ = nullptr;
+  QuadTargets targets_;
+  Quads* out_ = nullptr;  // of this draw; nullptr: quads end here
   bool all_quads_ = true;
   bool walking_ = false;
   std::uint32_t triangle_ = 0;

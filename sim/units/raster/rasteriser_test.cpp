@@ -28,7 +28,7 @@ struct RasterBench {
         in((bench.add(source), bench.add(raster), "in"), source, raster, 8),
         out((bench.add(sink), "out"), raster, sink, room, spec.latency) {
     source.connect(in);
-    raster.connect(in, &out, true);
+    raster.connect(in, {&out, nullptr, nullptr});
     sink.connect(out);
     bench.begin(draw.prepare(), {&raster});
     bench.run();

@@ -19,18 +19,17 @@ TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine
       line_shift_(static_cast<std::uint32_t>(
           std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))) {}
 
-void TextureUnit::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out, MemoryPort& port) {
-  in_ = &in;
+void TextureUnit::connect(const QuadSources& in, Quads& out, MemoryPort& port) {
+  sources_ = in;
   out_ = &out;
   port_ = &port;
 }
 
 std::uint64_t TextureUnit::start(const DrawJob& job) {
-  textured_ = job.draw->texture.has_value();
-  if (textured_) {
-    cache_.connect(*port_, job.texture_address);
-    cache_.invalidate();
-  }
+  if (!uses_texture(*job.draw)) return 0;
+  in_ = sources_.of(*job.draw);
+  cache_.connect(*port_, job.texture_address);
+  cache_.invalidate();
   next_block_ = 0;
   blocks_done_ = 0;
   next_cut_ = 0;
@@ -38,7 +37,6 @@ std::uint64_t TextureUnit::start(const DrawJob& job) {
 }
 
 void TextureUnit::pass(const Cut& cut) {
-  if (!textured_) return;
   std::size_t blocks = 0;
   for (const QuadWork& quad : last_of(cut.quads)) blocks += quad.texel_block_count;
   for (const std::uint32_t block : cut.blocks.last(blocks)) cache_.pass(block >> line_shift_, false);
@@ -58,7 +56,7 @@ bool TextureUnit::look_up(Cycle now, int& lookups) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   if (blocks_done_ == 0) pass_cuts(in_->front());
   const DrawWork& work = *job().work;
-  const std::uint32_t blocks = textured_ ? work.quads[in_->front()].texel_block_count : 0;
+  const std::uint32_t blocks = work.quads[in_->front()].texel_block_count;
   for (; blocks_done_ < blocks; ++blocks_done_, --lookups) {
     if (lookups == 0) return true;  // the rest of this quad in the next clock
     in_the_way_ =
@@ -72,6 +70,7 @@ bool TextureUnit::look_up(Cycle now, int& lookups) {
 }
 
 Step TextureUnit::advance(Cycle now) {
+  if (!in_) return idle();  // before the first draw
   in_the_way_ = nullptr;
   bool moved = false;
   for (int i = 0; i < quads_per_clock_ && leave(now); ++i) moved = true;

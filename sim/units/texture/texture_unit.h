@@ -2,15 +2,16 @@
 
 #include "model/machine/machine.h"
 #include "sim/units/cache/cached_unit.h"
+#include "sim/units/quad_paths.h"
 
 namespace splatscope::sim {
 
 // Looks the texel blocks of quads up in the texture cache; quads wait for their misses in a FIFO that hides
-// the latency of memory. Nearest sampling: one texel a pixel. Quads of draws without a texture pass through.
+// the latency of memory. Nearest sampling: one texel a pixel.
 class TextureUnit final : public CachedUnit {
  public:
   TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec, int quads_per_clock);
-  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out, MemoryPort& port);
+  void connect(const QuadSources& in, Quads& out, MemoryPort& port);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
@@ -25,7 +26,7 @@ class TextureUnit final : public CachedUnit {
   std::uint32_t line_shift_;  // blocks a line
   Channel<std::uint32_t>* out_ = nullptr;
   MemoryPort* port_ = nullptr;
-  bool textured_ = false;
+  QuadSources sources_;
   std::size_t next_block_ = 0;     // of the draw
   std::uint32_t blocks_done_ = 0;  // of the quad that is being looked up
   std::uint64_t quads_ = 0;

@@ -24,7 +24,7 @@ struct TextureBench {
         out((bench.add(sink), "out"), texture, sink, 8),
         memory(bench, texture, latency, memory_queue) {
     source.connect(in);
-    texture.connect(in, out, memory.port);
+    texture.connect({&in, nullptr, nullptr}, out, memory.port);
     sink.connect(out);
     draw.draw.texture = 0;
     bench.begin(draw.prepare(), {&texture});
