@@ -5,6 +5,7 @@
 #include "studies/alpha_texture.h"
 #include "studies/exploration.h"
 #include "studies/fidelity.h"
+#include "studies/growth.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
 
@@ -13,6 +14,7 @@ namespace splatscope::studies {
 std::span<const Study> own_studies() {
   static constexpr std::array kStudies = {
       Study{"fidelity", "the five fidelities: speed against accuracy", study_fidelity},
+      Study{"growth", "time and memory of a frame by its surfels, from 10,000 to a million", study_growth},
       Study{"vertex-data",
             "instructions against bytes a vertex, in video and in AGP memory (Ren 2002, section 8)",
             study_vertex_data},

@@ -1,0 +1,134 @@
+#include "studies/growth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "studies/peak_memory.h"
+#include "studies/run.h"
+
+namespace splatscope::studies {
+namespace {
+
+constexpr std::array kSides = {100, 178, 316, 562, 1000};
+constexpr int kRunsOfSurfels = 300000;  // small frames run several times
+constexpr int kMostRuns = 5;
+
+double least_seconds(const Trace& trace, const Machine& machine, Fidelity fidelity, int runs) {
+  double least = 0;
+  for (int i = 0; i < runs; ++i) {
+    const double seconds = run_frame(trace, machine, fidelity).host_seconds;
+    least = i == 0 ? seconds : std::min(least, seconds);
+  }
+  return least;
+}
+
+// One view of few pixels captures the weights: these change no time.
+GrowthRow row_of(int side, const Machine& machine) {
+  const traces::Scene scene = traces::parse_scene(
+      fmt::format("[surfels]\ngenerator = \"plane\"\ncolumns = {0}\nrows = {0}\n[frame]\nwidth = {1}\n"
+                  "height = {1}\n[capture]\nviews = 1\nframe_size = 64\n",
+                  side, 2 * side),
+      "plane");
+  const int surfels = side * side;
+  const bool is_measured = restart_peak_memory();
+  const std::size_t before = peak_memory();
+  const Trace trace = traces::record(scene, machine.numbers).trace;
+  const int runs = std::clamp(kRunsOfSurfels / surfels, 1, kMostRuns);
+  GrowthRow row;
+  row.surfels = surfels;
+  row.functional_seconds = least_seconds(trace, machine, Fidelity::functional, runs);
+  row.sampled_seconds = least_seconds(trace, machine, Fidelity::sampled, runs);
+  row.cycle_seconds = least_seconds(trace, machine, Fidelity::cycle, runs);
+  if (is_measured) row.megabytes = static_cast<double>(peak_memory() - before) / 1e6;
+  return row;
+}
+
+struct Measure {
+  std::string_view name;
+  double GrowthRow::*value;
+};
+constexpr Measure kMeasures[] = {{"functional, s", &GrowthRow::functional_seconds},
+                                 {"sampled, s", &GrowthRow::sampled_seconds},
+                                 {"cycle, s", &GrowthRow::cycle_seconds},
+                                 {"memory, MB", &GrowthRow::megabytes}};
+
+Plot::Series series_of(const std::vector<GrowthRow>& rows, const Measure& measure) {
+  Plot::Series series{.name = std::string(measure.name), .x = {}, .y = {}};
+  for (const GrowthRow& row : rows) {
+    series.x.push_back(row.surfels);
+    series.y.push_back(row.*measure.value);
+  }
+  return series;
+}
+
+}  // namespace
+
+double log_log_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = std::log(x[i]), v = std::log(y[i]);
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& progress) {
+  const Machine machine = machine::load("geforce4-ti4400");
+  double all = 0, done = 0;
+  for (const int side : sides) all += side * side;
+  std::vector<GrowthRow> rows;
+  for (const int side : sides) {
+    rows.push_back(row_of(side, machine));
+    done += side * side;
+    if (progress) progress(done / all);
+  }
+  return rows;
+}
+
+void study_growth(Findings& findings, const Progress& progress) {
+  using enum Report::Align;
+  const std::vector<GrowthRow> rows = growth_rows(kSides, progress);
+  auto results = nlohmann::ordered_json::object();
+  std::string text = fmt::format("{:>9}", "surfels");
+  std::vector<Report::Column> columns{{"surfels", number}};
+  std::vector<std::vector<std::string>> cells(rows.size() + 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    cells[i].push_back(fmt::format("{}", rows[i].surfels));
+    results["surfels"].push_back(rows[i].surfels);
+  }
+  cells.back().push_back("slope");
+  Plot plot{.title = "Growth of a frame",
+            .x_label = "surfels",
+            .y_label = "seconds or megabytes",
+            .log_x = true,
+            .log_y = true};
+  for (const Measure& measure : kMeasures) {
+    columns.push_back({std::string(measure.name), number});
+    plot.series.push_back(series_of(rows, measure));
+    const Plot::Series& series = plot.series.back();
+    const double slope = log_log_slope(series.x, series.y);
+    for (std::size_t i = 0; i < rows.size(); ++i) cells[i].push_back(fmt::format("{:.3f}", series.y[i]));
+    cells.back().push_back(fmt::format("{:.2f}", slope));
+    results["measures"][std::string(measure.name)] = {{"values", series.y}, {"log_log_slope", slope}};
+    text += fmt::format(" {:>14}", measure.name);
+  }
+  for (const auto& row : cells) {
+    text += fmt::format("\n{:>9}", row[0]);
+    for (std::size_t i = 1; i < row.size(); ++i) text += fmt::format(" {:>14}", row[i]);
+  }
+  findings.say(text + "\n");
+  findings.report().heading("Growth with the number of surfels");
+  findings.report().table("Planes with four pixels a surfel, each time the least of some runs.", columns,
+                          cells);
+  findings.plot("growth", plot);
+  findings.result("growth", std::move(results));
+}
+
+}  // namespace splatscope::studies

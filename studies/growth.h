@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "studies/study.h"
+
+namespace splatscope::studies {
+
+// What a frame of so many surfels costs the host. Four pixels a surfel, as in Table 1.
+struct GrowthRow {
+  int surfels = 0;
+  double functional_seconds = 0;  // each the least of some runs
+  double sampled_seconds = 0;
+  double cycle_seconds = 0;
+  double megabytes =
+      0;  // in memory at most, beyond what the process held before; 0: the system does not tell
+};
+
+// Square planes of `sides` surfels along an edge.
+std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& progress = {});
+
+// The exponent of a power law through the points, all above 0: the slope of their logarithms' least-squares
+// line.
+double log_log_slope(const std::vector<double>& x, const std::vector<double>& y);
+
+// The study: from 10,000 to a million surfels.
+void study_growth(Findings& findings, const Progress& progress);
+
+}  // namespace splatscope::studies
