@@ -126,7 +126,8 @@ class Renderer {
 }  // namespace
 
 Rendered render(const Trace& trace, const RenderOptions& options, const std::function<void(double)>& progress,
-                const std::function<void(const Frame&)>& on_frame) {
+                const std::function<void(const Frame&)>& on_frame,
+                const std::function<void(DrawWork)>& on_work) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
   Renderer renderer(trace, trace.commands, options, rendered);
   std::size_t command = 0;
@@ -134,6 +135,9 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
     for (; command < end; ++command) {
       if (progress) progress(static_cast<double>(command) / static_cast<double>(trace.commands.size()));
       renderer.run(command);
+      if (!on_work) continue;
+      for (DrawWork& work : rendered.work) on_work(std::move(work));
+      rendered.work.clear();
     }
     if (on_frame) on_frame(rendered.frame);
   }

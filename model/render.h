@@ -43,10 +43,12 @@ struct Rendered {
 // Draws every command of `trace`. The trace must hold together (traces/ checks one that comes from a file):
 // indices in range, index counts multiples of 3. Throws UserError where a program does not assemble.
 // `progress` is told the fraction done, from 0 to 1. `on_frame` is given every frame of the trace
-// (`frame_ends`) when it is done, in order.
+// (`frame_ends`) when it is done, in order. `on_work` takes the work of each draw when it is done, in order;
+// it is then not kept.
 Rendered render(const Trace& trace, const RenderOptions& options,
                 const std::function<void(double)>& progress = {},
-                const std::function<void(const Frame&)>& on_frame = {});
+                const std::function<void(const Frame&)>& on_frame = {},
+                const std::function<void(DrawWork)>& on_work = {});
 
 // The frame that `commands` leave, on the buffers, textures and programs of `trace`: many views share them.
 Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options);

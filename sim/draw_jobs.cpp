@@ -123,20 +123,15 @@ std::vector<UnitLeftOut> units_left_out(const Needs& needs) {
   return left_out;
 }
 
-PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
-                            const MemoryLayout& layout) {
+PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout) {
   PreparedDraws prepared;
   std::map<std::uint32_t, std::size_t> program_numbers;
-  std::size_t next_work = 0;
   for (std::size_t command = 0; command < trace.commands.size(); ++command) {
     const Draw* draw = std::get_if<Draw>(&trace.commands[command]);
     if (!draw) continue;
-    if (next_work == work.size() || work[next_work].command != command) {
-      throw ModelError("command " + std::to_string(command) + " of the trace has no work record");
-    }
     DrawJob job;
     job.draw = draw;
-    job.work = &work[next_work++];
+    job.command = static_cast<std::uint32_t>(command);
     const auto [found, is_new] =
         program_numbers.try_emplace(draw->vertex_program, prepared.vertex_programs.size());
     if (is_new) {
@@ -148,11 +143,24 @@ PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, 
     job.vertex_address = layout.buffers[draw->vertex_buffer];
     job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
     if (draw->texture) job.texture_address = layout.textures[*draw->texture];
-    check_work(job);
-    count_items(job);
     prepared.jobs.push_back(job);
   }
-  if (next_work != work.size()) throw ModelError("more work records than draws");
+  return prepared;
+}
+
+void give_work(DrawJob& job, const DrawWork& work) {
+  if (work.command != job.command)
+    throw ModelError("command " + std::to_string(job.command) + " of the trace has no work record");
+  job.work = &work;
+  check_work(job);
+  count_items(job);
+}
+
+PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
+                            const MemoryLayout& layout) {
+  PreparedDraws prepared = prepare_draws(trace, machine, layout);
+  if (prepared.jobs.size() != work.size()) throw ModelError("there are not as many work records as draws");
+  for (std::size_t i = 0; i < work.size(); ++i) give_work(prepared.jobs[i], work[i]);
   return prepared;
 }
 

@@ -50,12 +50,15 @@ std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel&
 // Counts in a job what its work holds of triangles to set up and of coloured quads.
 void count_items(DrawJob& job);
 
-// The vertex programs that the draws use, and the draws with their work, in order.
-// UserError where a program does not load, ModelError where trace and work do not fit together.
+// The vertex programs that the draws use, and the draws, in order. UserError where a program does not load.
 struct PreparedDraws {
   std::vector<std::vector<IssueSlot>> vertex_programs;
   std::vector<DrawJob> jobs;
 };
+PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout);
+// Gives a draw its work. ModelError where they do not fit together.
+void give_work(DrawJob& job, const DrawWork& work);
+// Both, for all draws.
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                             const MemoryLayout& layout);
 

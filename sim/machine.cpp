@@ -150,6 +150,7 @@ Units create_units(Builder& build, SimulatedMachine& machine, const Trace& trace
   machine.memory.assign(u.memory.begin(), u.memory.end());
   machine.host = u.host;
   machine.assembly = u.assembly;
+  machine.command = u.command;
   return u;
 }
 

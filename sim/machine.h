@@ -38,6 +38,7 @@ struct SimulatedMachine {
   std::vector<const Unit*> memory;  // of the units: the memory channels
   Host* host = nullptr;
   PrimitiveAssembly* assembly = nullptr;
+  CommandProcessor* command = nullptr;
 
   // Runs the trace. ModelError for a deadlock, with what every unit and channel holds.
   void run();

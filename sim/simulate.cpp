@@ -17,9 +17,38 @@ void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit,
 
 void report_progress(const SimulatedMachine& machine, const std::function<void(double)>& progress) {
   double triangles = 0;
-  for (const DrawJob& job : machine.jobs) triangles += static_cast<double>(job.work->triangles.size());
+  for (const DrawJob& job : machine.jobs) triangles += job.draw->index_count / 3;
   machine.assembly->on_progress(
       [triangles, &progress](std::uint64_t done) { progress(static_cast<double>(done) / triangles); });
+}
+
+Result run(SimulatedMachine& machine, const Trace& trace, const std::function<void(double)>& progress,
+           std::span<Observer* const> observers) {
+  const std::array<ClockDomain*, 2> domains{&machine.core, &machine.bus};
+  if (progress) report_progress(machine, progress);
+  for (Observer* observer : observers) {
+    observer->begin(machine);
+    for (ClockDomain* domain : domains) domain->observe(*observer, domain == &machine.core);
+  }
+  machine.run();
+
+  Result result;
+  result.cycles = machine.cycles();
+  result.seconds = static_cast<double>(machine.core.time(result.cycles)) * 1e-15;
+  for (ClockDomain* domain : domains) {
+    domain->finish_observing(result.cycles);
+    for (std::size_t place = 0; place < domain->units().size(); ++place) {
+      add_unit(result, machine, *domain->units()[place], domain->closed_books(place, result.cycles));
+    }
+  }
+  for (const Cycle end : machine.host->command_ends()) {
+    result.command_ends.push_back(machine.core_cycle(end));
+  }
+  result.frame_cycles = cycles_of_frames(trace, result);
+  result.units_left_out = machine.left_out;
+  for (Observer* observer : observers) observer->end(result);
+  if (progress) progress(1);
+  return result;
 }
 
 }  // namespace
@@ -56,31 +85,16 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
   const MemoryLayout layout = lay_out(trace, spec);
   const auto machine =
       build_machine(trace, prepare_draws(trace, work, spec, layout), layout, spec, scheduler, choice);
-  const std::array<ClockDomain*, 2> domains{&machine->core, &machine->bus};
-  if (progress) report_progress(*machine, progress);
-  for (Observer* observer : observers) {
-    observer->begin(*machine);
-    for (ClockDomain* domain : domains) domain->observe(*observer, domain == &machine->core);
-  }
-  machine->run();
+  return run(*machine, trace, progress, observers);
+}
 
-  Result result;
-  result.cycles = machine->cycles();
-  result.seconds = static_cast<double>(machine->core.time(result.cycles)) * 1e-15;
-  for (ClockDomain* domain : domains) {
-    domain->finish_observing(result.cycles);
-    for (std::size_t place = 0; place < domain->units().size(); ++place) {
-      add_unit(result, *machine, *domain->units()[place], domain->closed_books(place, result.cycles));
-    }
-  }
-  for (const Cycle end : machine->host->command_ends()) {
-    result.command_ends.push_back(machine->core_cycle(end));
-  }
-  result.frame_cycles = cycles_of_frames(trace, result);
-  result.units_left_out = machine->left_out;
-  for (Observer* observer : observers) observer->end(result);
-  if (progress) progress(1);
-  return result;
+Result simulate_beside(const Trace& trace, const WorkSource& work_of, const Machine& spec,
+                       Scheduler scheduler, const std::function<void(double)>& progress,
+                       std::span<Observer* const> observers) {
+  const MemoryLayout layout = lay_out(trace, spec);
+  const auto machine = build_machine(trace, prepare_draws(trace, spec, layout), layout, spec, scheduler);
+  machine->command->on_draw([&](std::uint32_t draw) { give_work(machine->jobs[draw], work_of(draw)); });
+  return run(*machine, trace, progress, observers);
 }
 
 }  // namespace splatscope::sim

@@ -73,4 +73,12 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
                 Scheduler scheduler = Scheduler::skip_ahead, const std::function<void(double)>& progress = {},
                 std::span<Observer* const> observers = {}, UnitChoice choice = UnitChoice::needed);
 
+// The same while the work is still being computed: `work_of` is asked for that of each draw, in order, just
+// before the draw begins, and may wait for it. It is needed until the next one is asked for.
+using WorkSource = std::function<const DrawWork&(std::size_t draw)>;
+Result simulate_beside(const Trace& trace, const WorkSource& work_of, const Machine& machine,
+                       Scheduler scheduler = Scheduler::skip_ahead,
+                       const std::function<void(double)>& progress = {},
+                       std::span<Observer* const> observers = {});
+
 }  // namespace splatscope::sim

@@ -184,6 +184,35 @@ TEST(Simulate, WorkThatDoesNotFitTheTraceIsABug) {
   EXPECT_THROW(simulate(made.trace, made.work, machine), ModelError);
 }
 
+// Work that comes while the simulation runs, one draw after the other, each in the place of the one before.
+TEST_P(RandomTraces, WorkThatComesAsItIsNeededGivesTheSame) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  RandomMaker maker(GetParam());
+  const RandomTrace made = maker.trace();
+  const Machine machine = maker.machine();
+  const Result at_once = simulate(made.trace, made.work, machine);
+  std::size_t asked = 0;
+  DrawWork now;
+  const Result beside = simulate_beside(
+      made.trace,
+      [&](std::size_t draw) -> const DrawWork& {
+        EXPECT_EQ(draw, asked++);
+        return now = made.work[draw];
+      },
+      machine);
+  EXPECT_EQ(asked, made.work.size());
+  EXPECT_EQ(beside.event_hash, at_once.event_hash);
+  EXPECT_EQ(beside.cycles, at_once.cycles);
+  EXPECT_EQ(beside.command_ends, at_once.command_ends);
+}
+
+TEST(Simulate, WorkThatFailsToComeEndsTheRun) {
+  const RandomTrace made = simple_trace(10);
+  const WorkSource broken = [](std::size_t) -> const DrawWork& { throw UserError("x", 0, "broken"); };
+  EXPECT_THROW(simulate_beside(made.trace, broken, Machine{}), UserError);
+  EXPECT_GT(simulate(made.trace, made.work, Machine{}).cycles, 0u);  // and the next one is not disturbed
+}
+
 TEST(Simulate, AProgramThatDoesNotLoadIsAUsersError) {
   RandomTrace made = simple_trace(10);
   made.trace.programs[1].text = "vs_1_1\nmoo r0, v0\n";

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <exception>
+#include <future>
 
 #include "model/error.h"
 #include "model/isa/program.h"
 #include "sim/fidelity/sampled.h"
 #include "sim/fidelity/throughput.h"
 #include "studies/reference_comparison.h"
+#include "studies/work_queue.h"
 #include "traces/output_files.h"
 #include "traces/trace_file.h"
 
@@ -187,6 +190,49 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
   }
 }
 
+namespace {
+
+// The time after the function.
+FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity,
+                   const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
+                   const TimingOptions& timing) {
+  FrameRun run{render(trace, options, progress, on_frame), {}, 0, 0, {}};
+  if (!options.record_work) return run;
+  const auto start = std::chrono::steady_clock::now();
+  run.timing = time_frame(trace, run.rendered.work, machine, fidelity, timing);
+  run.timing_seconds = seconds_since(start);
+  run.rendered.work = {};
+  return run;
+}
+
+// The function of the next draws beside the time of this one.
+FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelity,
+                    const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
+                    const TimingOptions& timing) {
+  const auto start = std::chrono::steady_clock::now();
+  WorkQueue queue;
+  std::future<Rendered> function = std::async(std::launch::async, [&] {
+    try {
+      return render(trace, options, {}, on_frame, [&](DrawWork work) { queue.put(std::move(work)); });
+    } catch (...) {
+      queue.fail(std::current_exception());
+      throw;
+    }
+  });
+  const struct Stop {  // before the future waits for its thread
+    WorkQueue& queue;
+    ~Stop() { queue.stop(); }
+  } stop{queue};
+  const auto scheduler = fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
+  sim::Result result = sim::simulate_beside(
+      trace, [&](std::size_t) -> const DrawWork& { return queue.next(); }, machine, scheduler, progress,
+      timing.observers);
+  const double seconds = seconds_since(start);
+  return {function.get(), std::move(result), 0, seconds, {}};
+}
+
+}  // namespace
+
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
                    const OnFrame& on_frame, const TimingOptions& timing) {
   const auto start = std::chrono::steady_clock::now();
@@ -194,19 +240,9 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
   options.record_work = fidelity != Fidelity::functional;
-  constexpr double kFunctionShare = 0.2;  // of the time of a run with timing, about
-  FrameRun run{render(trace, options, part(progress, 0, options.record_work ? kFunctionShare : 1), on_frame),
-               {},
-               0,
-               0,
-               {}};
-  if (options.record_work) {
-    const auto timing_start = std::chrono::steady_clock::now();
-    run.timing =
-        time_frame(trace, run.rendered.work, machine, fidelity, timing, part(progress, kFunctionShare, 1));
-    run.timing_seconds = seconds_since(timing_start);
-    run.rendered.work = {};
-  }
+  FrameRun run = fidelity == Fidelity::cycle || fidelity == Fidelity::referee
+                     ? run_beside(trace, machine, fidelity, options, progress, on_frame, timing)
+                     : run_after(trace, machine, fidelity, options, progress, on_frame, timing);
   run.host_seconds = seconds_since(start);
   return run;
 }

@@ -67,7 +67,8 @@ struct TimingOptions {
 sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                        Fidelity fidelity, const TimingOptions& options = {}, const Progress& progress = {});
 
-// The records of work are dropped once they are simulated.
+// Where every event is simulated (cycle, referee), the function of the next draws runs in a thread beside the
+// time of this one, and calls `on_frame`. The records of work are dropped once they are simulated.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const Progress& progress = {}, const OnFrame& on_frame = {},
                    const TimingOptions& timing = {});

@@ -19,7 +19,8 @@ struct Cut {
 // A draw as the units take it: its work, and what is the same for all of it.
 struct DrawJob {
   const Draw* draw = nullptr;
-  const DrawWork* work = nullptr;
+  const DrawWork* work = nullptr;    // null before the draw begins, where it is computed beside
+  std::uint32_t command = 0;         // its place in the trace
   std::size_t vertex_program = 0;    // which of the programs of the vertex units
   std::uint64_t pixel_clocks = 1;    // a quad, of the pixel unit
   std::uint32_t vertex_address = 0;  // of base vertex 0, in the memory it lies in

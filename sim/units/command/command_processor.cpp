@@ -33,6 +33,7 @@ void CommandProcessor::begin(Cycle now, const Order& order) {
   phase_ = order.kind == OrderKind::clear ? Phase::filling : Phase::working;
   switch (order.kind) {
     case OrderKind::draw:
+      if (prepare_) prepare_(order.job);
       return begin_draw(now, (*jobs_)[order.job]);
     case OrderKind::flush:
       return begin_flush(now);

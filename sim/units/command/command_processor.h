@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "sim/kernel/channel.h"
@@ -30,6 +31,8 @@ class CommandProcessor final : public Unit {
   CommandProcessor(std::string name, Completion& completion);
   void connect(Channel<Order>& from_host, Channel<std::uint32_t>& to_host, MemoryPort& port);
   void set_draws(const std::vector<DrawJob>& jobs, std::vector<DrawUnit*> units);
+  // Called with its number before a draw begins.
+  void on_draw(std::function<void(std::uint32_t)> prepare) { prepare_ = std::move(prepare); }
   // Null where the machine of this trace has none.
   void set_frame(DepthUnit* depth, bool fast_depth_clear, BlendUnit* blend, std::vector<Surface> cleared);
 
@@ -52,6 +55,7 @@ class CommandProcessor final : public Unit {
   MemoryPort* port_ = nullptr;
   const std::vector<DrawJob>* jobs_ = nullptr;
   std::vector<DrawUnit*> units_;
+  std::function<void(std::uint32_t)> prepare_;
   DepthUnit* depth_ = nullptr;
   bool fast_depth_clear_ = false;
   BlendUnit* blend_ = nullptr;

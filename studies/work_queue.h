@@ -1,0 +1,61 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+
+#include "model/work/work.h"
+
+namespace splatscope::studies {
+
+// The work of draws on its way from the thread that computes it to the one that times it. Few draws wait, so
+// that neither their number nor the scene's size decides how much memory they take.
+class WorkQueue {
+ public:
+  static constexpr std::size_t kAhead = 4;  // draws that wait
+
+  // ---- the thread that computes; waits while there is no room
+  void put(DrawWork work) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return waiting_.size() < kAhead || stopped_; });
+    if (!stopped_) waiting_.push_back(std::move(work));
+    changed_.notify_all();
+  }
+  // No more comes, for this reason.
+  void fail(std::exception_ptr reason) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::move(reason);
+    changed_.notify_all();
+  }
+
+  // ---- the thread that times: the next draw's work, which stays until the next call. Throws what fail() was
+  // given.
+  const DrawWork& next() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !waiting_.empty() || failure_; });
+    if (waiting_.empty()) std::rethrow_exception(failure_);
+    taken_ = std::move(waiting_.front());
+    waiting_.pop_front();
+    changed_.notify_all();
+    return *taken_;
+  }
+  // What comes is not wanted any more.
+  void stop() {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<DrawWork> waiting_;
+  std::optional<DrawWork> taken_;
+  std::exception_ptr failure_;
+  bool stopped_ = false;
+};
+
+}  // namespace splatscope::studies

@@ -1,0 +1,83 @@
+#include "studies/work_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <thread>
+
+#include "studies/run.h"
+
+namespace splatscope::studies {
+namespace {
+
+DrawWork work_of(std::uint32_t command) {
+  DrawWork work;
+  work.command = command;
+  return work;
+}
+
+TEST(WorkQueue, DrawsComeInOrderThoughFewCanWait) {
+  constexpr std::uint32_t kDraws = 10 * WorkQueue::kAhead;
+  WorkQueue queue;
+  std::thread maker([&] {
+    for (std::uint32_t i = 0; i < kDraws; ++i) queue.put(work_of(i));
+  });
+  for (std::uint32_t i = 0; i < kDraws; ++i) EXPECT_EQ(queue.next().command, i);
+  maker.join();
+}
+
+TEST(WorkQueue, AFailureComesAfterWhatWasMadeBefore) {
+  WorkQueue queue;
+  queue.put(work_of(7));
+  queue.fail(std::make_exception_ptr(std::runtime_error("no more")));
+  EXPECT_EQ(queue.next().command, 7u);
+  EXPECT_THROW(queue.next(), std::runtime_error);
+}
+
+TEST(WorkQueue, AfterAStopNothingWaits) {
+  WorkQueue queue;
+  std::thread maker([&] {
+    for (std::uint32_t i = 0; i < 3 * WorkQueue::kAhead; ++i) queue.put(work_of(i));
+  });
+  queue.next();
+  queue.stop();
+  maker.join();  // or the test hangs
+}
+
+// The function beside the time: the same picture, work and cycles as one after the other.
+TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
+  const Machine machine = machine::load("radeon-8500");
+  const traces::Scene scene = traces::parse_scene(
+      "[surfels]\ngenerator = \"plane\"\ncolumns = 150\nrows = 150\n[frame]\nwidth = 128\nheight = 128\n"
+      "[capture]\nviews = 1\nframe_size = 64\n",
+      "plane");
+  const Trace trace = traces::record(scene, machine.numbers).trace;
+  RenderOptions options;
+  options.formats = machine.numbers;
+  options.vertex_cache_entries = machine.vertex.cache_entries;
+  const Rendered rendered = render(trace, options);
+  ASSERT_GT(rendered.work.size(), 2u);  // several draws, or nothing runs beside anything
+  const sim::Result timing = sim::simulate(trace, rendered.work, machine);
+  const FrameRun run = run_frame(trace, machine, Fidelity::cycle);
+  EXPECT_EQ(run.timing->event_hash, timing.event_hash);
+  EXPECT_EQ(run.timing->cycles, timing.cycles);
+  EXPECT_EQ(run.rendered.counters.fragments_passed, rendered.counters.fragments_passed);
+  EXPECT_TRUE(run.rendered.work.empty());
+  for (std::size_t pixel = 0; pixel < 128 * 128; ++pixel)
+    ASSERT_EQ(run.rendered.frame.color(pixel), rendered.frame.color(pixel)) << "pixel " << pixel;
+}
+
+// What is wrong with a trace is found by the thread of the function, and told by the one that waits.
+TEST(RunFrame, AnErrorOfTheFunctionIsThrown) {
+  const Machine machine = machine::load("radeon-8500");
+  const traces::Scene scene = traces::parse_scene(
+      "[surfels]\ngenerator = \"plane\"\ncolumns = 8\nrows = 8\n[frame]\nwidth = 32\nheight = 32\n"
+      "[splatting]\nalgorithm = \"no-ewa\"\n",
+      "plane");
+  const Trace trace = traces::record(scene, machine.numbers).trace;
+  const auto fails = [](const Frame&) { throw std::runtime_error("a full disk"); };
+  EXPECT_THROW(run_frame(trace, machine, Fidelity::cycle, {}, fails), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace splatscope::studies
