@@ -62,6 +62,10 @@ void FragmentPipe::sample(std::size_t count) {
   for (std::size_t c = 0; c < 3; ++c) std::fill_n(batch_.t[0][c], count, 0.0f);  // D3DFMT_A8 has no colour
   const auto noted = std::span(blocks).first(work_ != nullptr ? count : 0);
   texture::sample_nearest(*bindings_.texture, coordinates[0], coordinates[1], {batch_.t[0][3], count}, noted);
+  if (const int bits = frame_.formats.filter_bits; bits > 0) {
+    texture::sample_bilinear(*bindings_.texture, bits, coordinates[0], coordinates[1],
+                             {batch_.t[0][3], count});
+  }
   note_blocks(noted);
 }
 

@@ -50,7 +50,9 @@ class Programs {
   const vertex::VertexProgram& vertex(std::uint32_t index) {
     const auto found = vertex_.find(index);
     if (found != vertex_.end()) return found->second;
-    return vertex_.emplace(index, vertex::VertexProgram(load(index), formats_.vertex_arithmetic))
+    return vertex_
+        .emplace(index,
+                 vertex::VertexProgram(load(index), formats_.vertex_arithmetic, formats_.reciprocal_bits))
         .first->second;
   }
 

@@ -77,6 +77,7 @@ class Checker {
   void check_texture(const Texture& texture) const {
     in_range("width", texture.width, 1, kMaxTextureEdge);
     in_range("height", texture.height, 1, kMaxTextureEdge);
+    if (texture.bits != 8) fail(fmt::format("texels of {} bits", texture.bits), "8, as a file holds");
     const std::size_t texels = std::size_t{texture.width} * texture.height;
     if (texture.texels.size() != texels)
       fail(fmt::format("{} bytes of texels", texture.texels.size()),

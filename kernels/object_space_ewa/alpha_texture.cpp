@@ -11,12 +11,20 @@ int optimal_length(double cutoff) {
   return static_cast<int>(std::ceil(510.0 * radius * steepest * std::exp(-0.5 * steepest * steepest)));
 }
 
-std::uint8_t alpha_texel(double cutoff, CutoffShape shape, double squared_radius) {
+namespace {
+
+long texel_of(double cutoff, CutoffShape shape, double squared_radius, int bits) {
   if (shape == CutoffShape::circle && squared_radius > 2.0 * cutoff) return 0;
-  return static_cast<std::uint8_t>(std::lround(255.0 * std::exp(-0.5 * squared_radius)));
+  return std::lround(((1 << bits) - 1) * std::exp(-0.5 * squared_radius));
 }
 
-Texture alpha_texture(double cutoff, int length, CutoffShape shape) {
+}  // namespace
+
+std::uint8_t alpha_texel(double cutoff, CutoffShape shape, double squared_radius) {
+  return static_cast<std::uint8_t>(texel_of(cutoff, shape, squared_radius, 8));
+}
+
+Texture alpha_texture(double cutoff, int length, CutoffShape shape, int bits) {
   const double radius = std::sqrt(2.0 * cutoff);
   const auto squared = [&](int texel) {
     const double coordinate = radius * ((2.0 * texel + 1.0) / length - 1.0);
@@ -24,10 +32,14 @@ Texture alpha_texture(double cutoff, int length, CutoffShape shape) {
   };
   Texture texture;
   texture.width = texture.height = static_cast<std::uint32_t>(length);
-  texture.texels.reserve(static_cast<std::size_t>(length) * static_cast<std::size_t>(length));
+  texture.bits = bits;
+  texture.texels.reserve(static_cast<std::size_t>(length) * static_cast<std::size_t>(length) *
+                         (bits > 8 ? 2 : 1));
   for (int row = 0; row < length; ++row) {
     for (int column = 0; column < length; ++column) {
-      texture.texels.push_back(alpha_texel(cutoff, shape, squared(row) + squared(column)));
+      const long texel = texel_of(cutoff, shape, squared(row) + squared(column), bits);
+      texture.texels.push_back(static_cast<std::uint8_t>(texel & 0xff));
+      if (bits > 8) texture.texels.push_back(static_cast<std::uint8_t>(texel >> 8));
     }
   }
   return texture;

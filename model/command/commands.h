@@ -32,12 +32,14 @@ struct Buffer {
   std::vector<std::byte> bytes;
 };
 
-// One channel of 8-bit alpha (D3DFMT_A8), rows from v = 0, width*height texels. Sampled at the nearest texel,
-// clamped to the edge.
+// One channel of 8-bit alpha (D3DFMT_A8), rows from v = 0, width*height texels, clamped to the edge. Studies
+// also make textures of other depths, which no trace file holds: a texel is a whole number of
+// 1/(2^bits - 1), in one byte up to 8 bits, else in two, the low one first.
 struct Texture {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<std::uint8_t> texels;
+  int bits = 8;  // 1 to 16
 };
 
 struct ShaderText {

@@ -33,7 +33,7 @@ ChoiceField choice(std::span<const std::string_view> names) {
 }
 
 constexpr std::array<std::string_view, 2> kArithmetics{"ieee", "nv20"};
-constexpr std::array<std::string_view, 2> kColorFormats{"unorm8", "float32"};
+constexpr std::array<std::string_view, 3> kColorFormats{"unorm8", "float32", "unorm12"};
 constexpr std::array<std::string_view, 5> kFrameFormats{"unorm8", "float32", "unorm10", "unorm16", "half"};
 constexpr std::array<std::string_view, 3> kFrameRoundings{"nearest", "truncate", "dither"};
 constexpr std::array<std::string_view, 2> kCombinerFormats{"float32", "signed9"};
@@ -55,6 +55,10 @@ std::vector<Parameter> number_parameters() {
       {"numbers.depth", "", choice<&NumberFormats::depth>(kDepthFormats), "depth buffer"},
       {"numbers.subpixel_bits", "bits", integer<&M::numbers, &NumberFormats::subpixel_bits>(0, 8),
        "fraction of window x and y on which coverage is decided"},
+      {"numbers.filter_bits", "bits", integer<&M::numbers, &NumberFormats::filter_bits>(0, 8),
+       "weights of bilinear texture filtering; 0: the nearest texel (timing counts its block alone)"},
+      {"numbers.reciprocal_bits", "bits", integer<&M::numbers, &NumberFormats::reciprocal_bits>(8, 24),
+       "significant bits that the results of RCP and RSQ are rounded to; 24: all"},
       {"clock.core_megahertz", "MHz", real<&M::clock, &M::Clock::core_megahertz>(1, 10000),
        "clock of the graphics core and of the memory (equal on these machines: one domain)"},
       {"clock.bus_megahertz", "MHz", real<&M::clock, &M::Clock::bus_megahertz>(1, 10000),

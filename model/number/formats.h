@@ -16,7 +16,7 @@ enum class FrameFormat : std::uint8_t { unorm8, float32, unorm10, unorm16, half 
 enum class FrameRounding : std::uint8_t { nearest, truncate, dither };
 
 // Interpolated colours as the pixel unit sees them, and its output to the blend unit.
-enum class ColorFormat : std::uint8_t { unorm8, float32 };
+enum class ColorFormat : std::uint8_t { unorm8, float32, unorm12 };
 
 // Results in the pixel unit: binary32 within the version's range; the 9-bit signed steps (1/255) of the
 // combiners of 2002; or binary32 without a range (to compare with implementations that have none).
@@ -32,7 +32,9 @@ struct NumberFormats {
   FrameFormat frame = FrameFormat::unorm8;
   FrameRounding frame_rounding = FrameRounding::nearest;
   DepthFormat depth = DepthFormat::z24;
-  int subpixel_bits = 4;  // of window x and y, 0 to 8: coverage is decided on this grid
+  int subpixel_bits = 4;     // of window x and y, 0 to 8: coverage is decided on this grid
+  int filter_bits = 0;       // of the weights of bilinear texture filtering, 1 to 8; 0: the nearest texel
+  int reciprocal_bits = 24;  // significant bits of RCP and RSQ, 8 to 24: results are rounded to nearest
 
   bool operator==(const NumberFormats&) const = default;
 };

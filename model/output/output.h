@@ -24,8 +24,8 @@ std::uint8_t quantize_unorm8(float value);
 
 void clear(const Clear& command, Frame& frame);
 
-// The colours of fragments as the pixel unit receives them, in place: saturated, and rounded to 8 bits where
-// the format says so. The array has room for a whole number of kLanes.
+// The colours of fragments as the pixel unit receives them, in place: saturated, and rounded to 8 or 12 bits
+// where the format says so. The array has room for a whole number of kLanes.
 inline constexpr std::size_t kLanes = 16;
 void receive_colors(float* values, std::size_t count, ColorFormat format);
 

@@ -115,12 +115,15 @@ TEST(Output, AdditiveBlendingRoundsEveryProduct) {
 TEST(Output, ReceivesColors) {
   testing::on_each_simd_target([] {
     const std::array<float, kLanes> given{-1, 0, 0.001f, 0.5f, 1, 2, kNaN};
-    std::array<float, kLanes> eight_bits = given, floats = given;
+    std::array<float, kLanes> eight_bits = given, floats = given, twelve_bits = given;
     receive_colors(eight_bits.data(), given.size(), ColorFormat::unorm8);
+    receive_colors(twelve_bits.data(), given.size(), ColorFormat::unorm12);
     receive_colors(floats.data(), given.size(), ColorFormat::float32);
     for (std::size_t i = 0; i < given.size(); ++i) {
       EXPECT_EQ(static_cast<float>(quantize_unorm8(given[i])) / 255.0f, eight_bits[i]) << given[i];
       EXPECT_EQ(saturate(given[i]), floats[i]) << given[i];
+      EXPECT_NEAR(saturate(given[i]), twelve_bits[i], 0.5001 / 4095) << given[i];
+      EXPECT_EQ(std::round(4095 * twelve_bits[i]) / 4095, twelve_bits[i]) << given[i];
     }
   });
 }

@@ -23,17 +23,18 @@ using Pixel = hn::CappedTag<std::uint8_t, 4>;
 HWY_INLINE V saturated(V value) {
   return hn::IfThenElseZero(hn::Gt(value, hn::Zero(F{})), hn::Min(value, hn::Set(F{}, 1.0f)));
 }
-// quantize_unorm8
-HWY_INLINE VI quantized(V value) {
-  return hn::ConvertTo(I{}, hn::Add(hn::Mul(saturated(value), hn::Set(F{}, 255.0f)), hn::Set(F{}, 0.5f)));
+// quantize_unorm8 where `steps` is 255
+HWY_INLINE VI quantized(V value, float steps = 255) {
+  return hn::ConvertTo(I{}, hn::Add(hn::Mul(saturated(value), hn::Set(F{}, steps)), hn::Set(F{}, 0.5f)));
 }
 
 void receive(float* values, std::size_t count, ColorFormat format) {
+  const float steps = format == ColorFormat::unorm12 ? 4095 : 255;
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{})) {
     const V value = hn::LoadU(F{}, values + i);
-    const V received = format == ColorFormat::unorm8
-                           ? hn::Div(hn::ConvertTo(F{}, quantized(value)), hn::Set(F{}, 255.0f))
-                           : saturated(value);
+    const V received = format == ColorFormat::float32
+                           ? saturated(value)
+                           : hn::Div(hn::ConvertTo(F{}, quantized(value, steps)), hn::Set(F{}, steps));
     hn::StoreU(received, F{}, values + i);
   }
 }

@@ -6,7 +6,13 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+
+namespace splatscope::texture {
+float wide_texel(const Texture& texture, std::size_t index);  // of any depth
+}
 
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::texture::HWY_NAMESPACE {
@@ -34,6 +40,10 @@ constexpr std::array<float, 256> unorm8_values() {
 }
 constexpr std::array<float, 256> kUnorm8 = unorm8_values();
 
+HWY_INLINE float texel(const Texture& texture, std::size_t index) {
+  return texture.bits == 8 ? kUnorm8[texture.texels[index]] : wide_texel(texture, index);
+}
+
 void sample(const Texture& texture, const float* u, const float* v, std::span<float> alpha,
             std::span<std::uint32_t> blocks) {
   const std::uint32_t blocks_in_row = (texture.width + kTexelBlockEdge - 1) / kTexelBlockEdge;
@@ -44,7 +54,7 @@ void sample(const Texture& texture, const float* u, const float* v, std::span<fl
     places(v + first, texture.height, count, y);
     for (std::size_t i = 0; i < count; ++i) {
       const auto column = static_cast<std::uint32_t>(x[i]), row = static_cast<std::uint32_t>(y[i]);
-      alpha[first + i] = kUnorm8[texture.texels[row * std::size_t{texture.width} + column]];
+      alpha[first + i] = texel(texture, row * std::size_t{texture.width} + column);
       if (!blocks.empty())
         blocks[first + i] = (row / kTexelBlockEdge) * blocks_in_row + column / kTexelBlockEdge;
     }
@@ -57,6 +67,45 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace splatscope::texture {
 HWY_EXPORT(sample);
+
+float wide_texel(const Texture& texture, std::size_t index) {
+  const int level = texture.bits > 8 ? texture.texels[2 * index] + 256 * texture.texels[2 * index + 1]
+                                     : texture.texels[index];
+  return static_cast<float>(level) / static_cast<float>((1 << texture.bits) - 1);
+}
+
+namespace {
+
+// The texels on both sides of a coordinate along one side of the texture, and the weight of the second.
+struct Between {
+  std::size_t first = 0, second = 0;
+  float weight = 0;
+};
+
+Between between(float coordinate, std::uint32_t size, int weight_bits) {
+  const float last = static_cast<float>(size - 1), steps = static_cast<float>(1 << weight_bits);
+  const float place = coordinate * static_cast<float>(size) - 0.5f;
+  const float clamped = place > 0 ? std::min(place, last) : 0;
+  const float first = std::floor(clamped);
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(std::min(first + 1, last)),
+          std::floor((clamped - first) * steps + 0.5f) / steps};
+}
+
+}  // namespace
+
+void sample_bilinear(const Texture& texture, int weight_bits, const float* u, const float* v,
+                     std::span<float> alpha) {
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    const Between x = between(u[i], texture.width, weight_bits),
+                  y = between(v[i], texture.height, weight_bits);
+    const auto row = [&](std::size_t at) {
+      const float left = wide_texel(texture, at * texture.width + x.first);
+      return left + x.weight * (wide_texel(texture, at * texture.width + x.second) - left);
+    };
+    const float upper = row(y.first);
+    alpha[i] = upper + y.weight * (row(y.second) - upper);
+  }
+}
 
 void sample_nearest(const Texture& texture, const float* u, const float* v, std::span<float> alpha,
                     std::span<std::uint32_t> blocks) {

@@ -15,4 +15,9 @@ namespace splatscope::texture {
 void sample_nearest(const Texture& texture, const float* u, const float* v, std::span<float> alpha,
                     std::span<std::uint32_t> blocks);
 
+// The alpha between the four texels about (u, v), with weights rounded to `weight_bits` fraction bits, 1
+// to 8.
+void sample_bilinear(const Texture& texture, int weight_bits, const float* u, const float* v,
+                     std::span<float> alpha);
+
 }  // namespace splatscope::texture

@@ -30,5 +30,32 @@ TEST(SampleNearest, TakesTheNearestTexelAndStaysAtTheEdge) {
   });
 }
 
+TEST(SampleNearest, ReadsTexelsOfOtherDepths) {
+  const std::array<float, 16> u{0.75f}, v{0.5f};
+  std::array<float, 1> alpha;
+  const Texture five{2, 1, {0, 20}, 5}, twelve{2, 1, {0, 0, 0x34, 0x0b}, 12};
+  sample_nearest(five, u.data(), v.data(), alpha, {});
+  EXPECT_EQ(20.0f / 31, alpha[0]);
+  sample_nearest(twelve, u.data(), v.data(), alpha, {});
+  EXPECT_EQ(0xb34 / 4095.0f, alpha[0]);
+}
+
+TEST(SampleBilinear, WeighsTheFourTexelsAbout) {
+  const Texture texture{2, 2, {0, 255, 255, 255}};
+  const auto at = [&](float u, float v, int bits) {
+    std::array<float, 1> alpha;
+    sample_bilinear(texture, bits, &u, &v, alpha);
+    return alpha[0];
+  };
+  EXPECT_EQ(at(0.25f, 0.25f, 8), 0);  // a texel's centre
+  EXPECT_EQ(at(0, 0, 8), 0);          // clamped to the edge
+  EXPECT_EQ(at(1, 0.1f, 8), 1);
+  EXPECT_EQ(at(0.5f, 0.25f, 8), 0.5f);
+  EXPECT_EQ(at(0.5f, 0.5f, 8), 0.75f);
+  EXPECT_EQ(at(0.25f + 0.3f / 2, 0.25f, 1), 0.5f);  // 0.3 is nearer to 1/2 than to 0
+  EXPECT_EQ(at(0.25f + 0.3f / 2, 0.25f, 2), 0.25f);
+  EXPECT_EQ(at(std::numeric_limits<float>::quiet_NaN(), 0, 8), 0);
+}
+
 }  // namespace
 }  // namespace splatscope::texture

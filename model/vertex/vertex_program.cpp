@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/number/significand.h"
 #include "model/vertex/processor_mode.h"
 #include "model/vertex/steps.h"
 
@@ -12,6 +13,7 @@ namespace splatscope::vertex {
 
 struct VertexProgram::Decoded {
   Arithmetic arithmetic = Arithmetic::ieee;
+  int reciprocal_bits = 24;
   std::vector<Step> steps;
   std::size_t instructions = 0;
   std::vector<std::pair<std::uint16_t, Vec4>> defined;  // by `def`
@@ -71,11 +73,14 @@ class VertexProgram::Execution {
       run_address_step(step, workspace_, in_, count);
     else
       run_call(calls_[i]);
+    if (program_.reciprocal_bits < 24) round_reciprocal(calls_[i], count);
   }
 
   const Workspace& workspace() const { return workspace_; }
 
  private:
+  void round_reciprocal(const Call& call, int count) const;
+
   const Decoded& program_;
   const InputBatch& in_;
   Workspace workspace_;
@@ -115,9 +120,19 @@ void VertexProgram::Execution::begin(int count) {
   }
 }
 
-VertexProgram::VertexProgram(const isa::Program& program, Arithmetic arithmetic)
+void VertexProgram::Execution::round_reciprocal(const Call& call, int count) const {
+  if (call.operation != Operation::reciprocal && call.operation != Operation::reciprocal_sqrt) return;
+  for (std::size_t i = 0; i < call.component_count; ++i) {
+    float* const values = call.destination + call.components[i] * kBatch;
+    for (int vertex = 0; vertex < count; ++vertex)
+      values[vertex] = rounded_significand(values[vertex], program_.reciprocal_bits);
+  }
+}
+
+VertexProgram::VertexProgram(const isa::Program& program, Arithmetic arithmetic, int reciprocal_bits)
     : decoded_(std::make_unique<Decoded>()) {
   decoded_->arithmetic = arithmetic;
+  decoded_->reciprocal_bits = reciprocal_bits;
   decoded_->steps = make_steps(program);
   decoded_->instructions = program.instructions.size();
   for (const isa::Definition& definition : program.definitions)

@@ -36,7 +36,8 @@ struct VertexState {
 // code. Outputs: components that the program does not write are 0 (oD0: 1).
 class VertexProgram {
  public:
-  VertexProgram(const isa::Program& program, Arithmetic arithmetic);
+  // Results of RCP and RSQ are rounded to `reciprocal_bits` significant bits, 8 to 24.
+  VertexProgram(const isa::Program& program, Arithmetic arithmetic, int reciprocal_bits = 24);
   ~VertexProgram();
   VertexProgram(VertexProgram&&) noexcept;
   VertexProgram& operator=(VertexProgram&&) noexcept;

@@ -46,6 +46,28 @@ TEST(VertexProgram, ADestinationMayBeItsOwnSwizzledSource) {
   EXPECT_EQ(run("mov r0, v0\nmov r0, r0.yzwx\nmov oPos, r0", oPos), (Vec4{2, 3, 4, 1}));
 }
 
+// RCP and RSQ alone are rounded, in both arithmetics, by every way to run a program.
+TEST(VertexProgram, ReciprocalsOfFewerBits) {
+  const isa::Program text = isa::load(
+      "vs_1_1\nrcp r0.x, v0.z\nrsq r0.y, v0.y\nmul r0.z, v0.z, r0.x\n"
+      "mov oPos, r0.xyzz",
+      "test");
+  Batches batch;
+  std::memset(batch.in.get(), 0, sizeof(InputBatch));
+  for (int c = 0; c < 4; ++c) batch.in->v[0][c][0] = static_cast<float>(c + 1);
+  for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
+    const VertexProgram program(text, arithmetic, 9);
+    const auto& o = batch.out->o[oPos];
+    for (const bool scalar : {false, true}) {
+      scalar ? program.run_scalar({}, *batch.in, *batch.out, 1) : program.run({}, *batch.in, *batch.out, 1);
+      EXPECT_EQ(o[0][0], 0x155p-10f);  // 1/3 = 0.0101010101|01...b
+      EXPECT_EQ(o[1][0], 0x16ap-9f);   // 1/sqrt 2 = 0.101101010|000...b
+      EXPECT_EQ(o[2][0], 3 * 0x155p-10f);
+      EXPECT_EQ(program.trace({}, *batch.in).back().outputs[oPos][0], 0x155p-10f);
+    }
+  }
+}
+
 TEST(VertexProgram, MatrixMacros) {
   EXPECT_EQ(run("m4x4 oPos, v0, c0", oPos), (Vec4{300, 310, 320, 330}));
   EXPECT_EQ(run("m3x2 r0.xy, v0, c2\nmov oPos, r0.xyxy", oPos), (Vec4{152, 158, 152, 158}));
