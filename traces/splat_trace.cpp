@@ -16,15 +16,26 @@ namespace {
 constexpr std::uint32_t kCorners = 4;  // of a surfel's quad
 constexpr std::uint32_t kIndices = 6;  // two triangles
 
+// Of a surfel, in pixels where it lies at the near plane: larger ones are drawn of this size, which covers
+// any frame as well. Fourth powers of it appear in the EWA program, and must be finite floats.
+constexpr double kLargestRadius = 1e9;
+
+float largest_radius(const kernels::View& view) {
+  const double scale = glm::length(glm::dvec3(view.object_to_camera[0]));  // of the camera space
+  return static_cast<float>(kLargestRadius * view.near_plane / (view.eta * scale));
+}
+
 Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& from,
-                     const Splatting& settings) {
+                     const Splatting& settings, float largest) {
   const auto& [surfels, weights] = from;
   Buffer buffer;
   const std::size_t bytes = kernels::vertex_bytes(program.fields);
   buffer.bytes.resize(surfels.size() * kCorners * bytes);
   std::byte* out = buffer.bytes.data();
   for (std::size_t k = 0; k < surfels.size(); ++k) {
-    const Tangents axes = tangents(surfels[k]);
+    Surfel drawn = surfels[k];
+    drawn.radius = std::min(drawn.radius, largest);
+    const Tangents axes = tangents(drawn);
     kernels::Surfel surfel{glm::dvec3(surfels[k].position), axes.s, axes.t, settings.sigma, 0,
                            glm::dvec3(surfels[k].color)};
     for (std::size_t i = 0; i < kCorners; ++i) {
@@ -100,15 +111,15 @@ RecordedPass make_pass(const kernels::SplatProgram& program, std::uint32_t verte
 }
 
 // Fills the trace's buffers. Passes with the same vertices share them.
-void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& settings, RecordedPass& visibility,
-                 RecordedPass& splats, Trace& trace) {
+void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& settings, float largest,
+                 RecordedPass& visibility, RecordedPass& splats, Trace& trace) {
   std::size_t most = 0;
   for (const SurfelBuffer& buffer : buffers) most = std::max(most, buffer.surfels.size());
   trace.buffers.push_back(quad_indices(std::min(most, kSurfelsADraw)));
   const bool shared = std::ranges::equal(splats.program.fields, visibility.program.fields);
   const auto add = [&](RecordedPass& pass, const SurfelBuffer& buffer) {
     pass.vertex_buffers.push_back(static_cast<std::uint32_t>(trace.buffers.size()));
-    trace.buffers.push_back(vertex_buffer(pass.program, buffer, settings));
+    trace.buffers.push_back(vertex_buffer(pass.program, buffer, settings, largest));
   };
   for (const SurfelBuffer& buffer : buffers) {
     add(visibility, buffer);
@@ -179,7 +190,7 @@ Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::ve
   state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
   state.destination_factor = BlendFactor::one;
 
-  add_buffers(buffers, settings, visibility, splats, trace);
+  add_buffers(buffers, settings, largest_radius(view), visibility, splats, trace);
   const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
   trace.textures.push_back(kernels::alpha_texture(settings.cutoff, texture_length(settings), shape));
   trace.programs = {kernels::shader_text(visibility.program.file), kernels::shader_text(splats.program.file),
