@@ -59,10 +59,9 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
 
 void print(const studies::Comparison& c) {
   std::cout << fmt::format(
-      "  against the reference: PSNR {:.1f} dB over {} pixels, at worst {:.0f}/255, {} of {} pixels inside "
-      "the "
-      "silhouette are holes\n",
-      c.psnr, c.surface_pixels, c.worst, c.holes, c.inside_pixels);
+      "  against the reference: PSNR {:.1f} dB over {} pixels, {:.1f} dB over the {} of them off edges, at "
+      "worst {:.0f}/255, {} of {} pixels inside the silhouette are holes\n",
+      c.psnr, c.surface_pixels, c.psnr_off_edges, c.pixels_off_edges, c.worst, c.holes, c.inside_pixels);
 }
 
 void run(const Options& options, bool quiet) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "model/error.h"
 #include "traces/splat_trace.h"
@@ -30,26 +31,42 @@ kernels::ReferenceSettings filter_of(const traces::Scene& scene) {
       .shape = scene.splatting.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square};
 }
 
-// All of a Comparison but its holes.
-Comparison surface_difference(const Frame& frame, const kernels::SplatSums& reference) {
+// Mean square of differences as decibels.
+struct SquareSum {
+  std::size_t pixels = 0;
+  double squares = 0;  // of three channels a pixel
+  double psnr() const { return -10 * std::log10(squares / (3.0 * static_cast<double>(pixels))); }
+};
+
+// Of the frame's channels from the reference's.
+glm::dvec3 difference(const Frame& frame, const kernels::SplatSums& reference, std::size_t pixel) {
+  const Vec4 color = frame.color(pixel);
+  const glm::dvec3 shown(color[0], color[1], color[2]);
+  return glm::clamp(shown, 0.0, 1.0) - reference.normalized[pixel];
+}
+
+// All of a Comparison that needs no depth. `off_edge` says which pixels are, or is empty.
+Comparison surface_difference(const Frame& frame, const kernels::SplatSums& reference,
+                              const std::vector<char>& off_edge) {
   const double half = 0.5 * median_weight(reference);
   Comparison out;
-  double squares = 0;
+  SquareSum all, inner;
   for (std::size_t pixel = 0; pixel < reference.sums.size(); ++pixel) {
     if (!(reference.sums[pixel].w > 0) || reference.sums[pixel].w < half) continue;
-    ++out.surface_pixels;
-    const Vec4 color = frame.color(pixel);
-    double largest = 0;
-    for (int c = 0; c < 3; ++c) {
-      const double difference =
-          std::clamp(double{color[static_cast<std::size_t>(c)]}, 0.0, 1.0) - reference.normalized[pixel][c];
-      squares += difference * difference;
-      largest = std::max(largest, std::abs(difference));
+    const glm::dvec3 d = difference(frame, reference, pixel);
+    for (SquareSum* sum : {&all, &inner}) {
+      if (sum == &inner && (off_edge.empty() || !off_edge[pixel])) continue;
+      ++sum->pixels;
+      sum->squares += d.r * d.r + d.g * d.g + d.b * d.b;
     }
-    out.worst = std::max(out.worst, 255 * largest);
-    out.over_8 += 255 * largest > 8;
+    const double largest = 255 * std::max({std::abs(d.r), std::abs(d.g), std::abs(d.b)});
+    out.worst = std::max(out.worst, largest);
+    out.over_8 += largest > 8;
   }
-  out.psnr = -10 * std::log10(squares / (3.0 * static_cast<double>(out.surface_pixels)));
+  out.surface_pixels = all.pixels;
+  out.psnr = all.psnr();
+  out.pixels_off_edges = inner.pixels;
+  out.psnr_off_edges = inner.psnr();
   return out;
 }
 
@@ -65,6 +82,39 @@ bool is_inside(const kernels::ScreenSpacePicture& reference, int x, int y) {
     }
   }
   return true;
+}
+
+// Whether the depth image ends or jumps between two pixels beside each other.
+bool jumps(const kernels::ScreenSpacePicture& reference, double a, double b) {
+  return !(std::abs(a - b) <= 2 * reference.depth_offset);  // also where one or both are infinite
+}
+
+// Pixels that have no edge within kEdgeReach of them. The frame's border is one.
+std::vector<char> off_edges(const kernels::ScreenSpacePicture& reference) {
+  constexpr int kEdgeReach = 4;
+  const int width = reference.width, height = reference.height;
+  const auto depth = [&](int x, int y) { return reference.depth[pixel_index(reference, x, y)]; };
+  std::vector<char> edge(reference.depth.size());
+  const auto mark = [&](int x, int y, int i, int j) {  // x, y and its neighbour i, j to the right or below
+    const bool border = x < 0 || y < 0 || i == width || j == height;
+    if (!border && !jumps(reference, depth(x, y), depth(i, j))) return;
+    if (x >= 0 && y >= 0) edge[pixel_index(reference, x, y)] = 1;
+    if (i < width && j < height) edge[pixel_index(reference, i, j)] = 1;
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = -1; x < width; ++x) mark(x, y, x + 1, y);
+  for (int y = -1; y < height; ++y)
+    for (int x = 0; x < width; ++x) mark(x, y, x, y + 1);
+  std::vector<char> off(edge.size(), 1);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (!edge[pixel_index(reference, x, y)]) continue;
+      for (int j = std::max(0, y - kEdgeReach); j < std::min(height, y + kEdgeReach + 1); ++j)
+        for (int i = std::max(0, x - kEdgeReach); i < std::min(width, x + kEdgeReach + 1); ++i)
+          off[pixel_index(reference, i, j)] = 0;
+    }
+  }
+  return off;
 }
 
 }  // namespace
@@ -96,7 +146,13 @@ kernels::ScreenMap screen_map_by_name(std::string_view name) {
 }
 
 kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene, kernels::ScreenMap map) {
-  return kernels::screen_space_ewa(traces::view_of(scene.camera, scene.frame), reference_surfels(scene),
+  return screen_space_reference(scene, reference_surfels(scene), map);
+}
+
+kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene,
+                                                   std::span<const kernels::Surfel> surfels,
+                                                   kernels::ScreenMap map) {
+  return kernels::screen_space_ewa(traces::view_of(scene.camera, scene.frame), surfels,
                                    {.filter = filter_of(scene),
                                     .map = map,
                                     .depth_offset = scene.splatting.depth_offset,
@@ -104,11 +160,11 @@ kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene, k
 }
 
 double psnr(const Frame& frame, const kernels::SplatSums& reference) {
-  return surface_difference(frame, reference).psnr;
+  return surface_difference(frame, reference, {}).psnr;
 }
 
 Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference) {
-  Comparison out = surface_difference(frame, reference);
+  Comparison out = surface_difference(frame, reference, off_edges(reference));
   for (int y = 1; y + 1 < reference.height; ++y) {
     for (int x = 1; x + 1 < reference.width; ++x) {
       if (!is_inside(reference, x, y)) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string_view>
 
 #include "kernels/reference/ewa_reference.h"
@@ -33,6 +34,10 @@ kernels::ScreenMap screen_map_by_name(std::string_view name);
 // EWA prefilter whatever its algorithm.
 kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene,
                                                    kernels::ScreenMap map = kernels::ScreenMap::affine);
+// The same of surfels with other weights than the scene's.
+kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene,
+                                                   std::span<const kernels::Surfel> surfels,
+                                                   kernels::ScreenMap map = kernels::ScreenMap::affine);
 
 // Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the
 // summed weights are at least half of what they are in its inside. Splats reach further, but there is no
@@ -46,6 +51,12 @@ struct Comparison {
   double psnr = 0;         // dB
   double worst = 0;        // largest difference of a channel, in 1/255
   std::size_t over_8 = 0;  // pixels with a channel that is more than 8/255 off
+  // The same away from edges: no pixel within four, as far as a splat's filter reaches, has nothing beside it
+  // or something more than 2 z_t nearer or further. At an edge a part of every filter lies off the surface.
+  // Normalised per pixel that part is divided out; normalised per surfel the surface fades over its last
+  // pixels, as a prefiltered edge does: there the two are different pictures, in whatever precision.
+  std::size_t pixels_off_edges = 0;
+  double psnr_off_edges = 0;  // dB
   // Pixels inside the silhouette that the frame left black and without weight: their rays and those of the
   // eight pixels about them meet an opaque quad of the reference.
   std::size_t inside_pixels = 0;

@@ -59,6 +59,32 @@ TEST(ReferenceComparison, counts_holes_and_differences_on_the_surface_alone) {
   EXPECT_NEAR(c.psnr, -10 * std::log10(3 * 0.25 / 25), 1e-9);
 }
 
+// 24 x 24 pixels of grey; from column 12 on `step` further away.
+kernels::ScreenSpacePicture two_planes(double step) {
+  kernels::ScreenSpacePicture picture;
+  picture.width = picture.height = 24;
+  picture.depth_offset = 0.5;
+  picture.sums.resize(576, {0.5, 0.5, 0.5, 1});
+  picture.normalized.resize(576, glm::dvec3(0.5));
+  for (std::size_t i = 0; i < 576; ++i) picture.depth.push_back(i % 24 < 12 ? 2 : 2 + step);
+  return picture;
+}
+
+TEST(ReferenceComparison, tells_pixels_off_edges_apart) {
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  Frame frame(24, 24, formats);
+  for (Vec4& color : frame.colors32) color = {0.5f, 0.5f, 0.5f, 1};
+  frame.colors32[24 * 12 + 6] = {0.6f, 0.5f, 0.5f, 1};  // off edges
+  frame.colors32[24 * 12 + 7] = {0, 0, 0, 1};           // four pixels from the jump
+  const Comparison jump = compare(frame, two_planes(1.01));
+  EXPECT_EQ(jump.pixels_off_edges, 4u * 14);  // columns 5, 6, 17 and 18 of rows 5 to 18
+  EXPECT_NEAR(jump.psnr_off_edges, -10 * std::log10(0.01 / (3.0 * 56)), 1e-4);
+  const Comparison slope = compare(frame, two_planes(0.99));
+  EXPECT_EQ(slope.pixels_off_edges, 14u * 14);
+  EXPECT_NEAR(slope.psnr_off_edges, -10 * std::log10((0.01 + 0.75) / (3.0 * 196)), 1e-4);
+}
+
 TEST(ReferenceComparison, maps_have_names) {
   EXPECT_EQ(screen_map_by_name("affine"), kernels::ScreenMap::affine);
   EXPECT_EQ(screen_map_by_name("perspective"), kernels::ScreenMap::perspective);

@@ -103,8 +103,14 @@ Json statistics_json(const sim::Result& timing) {
 // A figure that no file can hold, an infinite PSNR, is null.
 Json reference_json(const Frame& frame, const kernels::ScreenSpacePicture& reference) {
   const Comparison c = compare(frame, reference);
-  return {{"psnr_decibels", c.psnr},   {"surface_pixels", c.surface_pixels}, {"worst", c.worst},
-          {"pixels_over_8", c.over_8}, {"inside_pixels", c.inside_pixels},   {"holes", c.holes}};
+  return {{"psnr_decibels", c.psnr},
+          {"surface_pixels", c.surface_pixels},
+          {"psnr_off_edges_decibels", c.psnr_off_edges},
+          {"pixels_off_edges", c.pixels_off_edges},
+          {"worst", c.worst},
+          {"pixels_over_8", c.over_8},
+          {"inside_pixels", c.inside_pixels},
+          {"holes", c.holes}};
 }
 
 Json mesh_json(const traces::MeshCounts& mesh) {

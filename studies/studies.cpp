@@ -6,6 +6,7 @@
 #include "studies/exploration.h"
 #include "studies/fidelity.h"
 #include "studies/growth.h"
+#include "studies/picture_quality.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
 
@@ -23,6 +24,9 @@ std::span<const Study> own_studies() {
             study_software},
       Study{"alpha-texture", "the size of the alpha texture, for any cutoff (Ren 2002, Eq. 15 and 16)",
             study_alpha_texture},
+      Study{"quality",
+            "pictures of models against the double-precision reference, and what keeps them from it",
+            study_quality},
       Study{"exploration", "shorter programs, and the hardware that Ren 2002, section 9, wishes for",
             study_exploration},
   };

@@ -1,5 +1,8 @@
 #include "traces/gamma.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -32,20 +35,27 @@ double filter_at(const Surfel& surfel, const Splatting& splatting, const glm::dv
 
 }  // namespace
 
+std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting& splatting,
+                                std::size_t step) {
+  const NeighbourSearch search(surfels);
+  std::vector<double> sums((surfels.size() + step - 1) / step);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.size(), 256), [&](const auto& range) {
+    NeighbourSearch::Found near;
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const Surfel& asked = surfels[i * step];
+      search.find(i * step, kNeighbours, near);
+      for (const std::uint32_t j : near.index) {
+        if (glm::dot(surfels[j].normal, asked.normal) <= 0) continue;
+        sums[i] += filter_at(surfels[j], splatting, asked.position);
+      }
+    }
+  });
+  return sums;
+}
+
 double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splatting) {
   if (surfels.empty()) return kPaperGamma;
-  const NeighbourSearch search(surfels);
-  NeighbourSearch::Found near;
-  std::vector<double> sums;
-  for (std::size_t k = 0; k < surfels.size(); k += surfels.size() / kAsked + 1) {
-    search.find(k, kNeighbours, near);
-    double sum = 0;
-    for (const std::uint32_t j : near.index) {
-      if (glm::dot(surfels[j].normal, surfels[k].normal) <= 0) continue;
-      sum += filter_at(surfels[j], splatting, surfels[k].position);
-    }
-    sums.push_back(sum);
-  }
+  std::vector<double> sums = filter_sums(surfels, splatting, surfels.size() / kAsked + 1);
   const auto high = sums.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sums.size() - 1));
   std::ranges::nth_element(sums, high);
   return std::min(kPaperGamma, 1 / (kBetween * *high));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "traces/scene.h"
 
@@ -14,5 +15,11 @@ inline constexpr double kPaperGamma = 0.73;  // Ren 2002, section 7.2: "works fo
 // buffer, and the captured weights would all be the same. Found from the sums at the surfels themselves
 // (10,000 of them, spread evenly over their order), in double precision; 1 in 100 may be larger.
 double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splatting);
+
+// The sums of the filters r_j (Ren 2002, Eq. 1) at every `step`th surfel, in double precision: what a capture
+// of weights measures, and whose inverse s_k is (7.1). Surfels that face away from the asked one are on
+// another side of the model and do not count.
+std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting& splatting,
+                                std::size_t step);
 
 }  // namespace splatscope::traces

@@ -37,6 +37,7 @@ class Renderer {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     picture_.width = view.width;
     picture_.height = view.height;
+    picture_.depth_offset = settings.depth_offset;
     picture_.sums.resize(pixels);
     picture_.normalized.resize(pixels);
     picture_.depth.resize(pixels, std::numeric_limits<double>::infinity());

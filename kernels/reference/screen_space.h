@@ -30,6 +30,7 @@ struct ScreenSpacePicture : SplatSums {
   // Camera z of the nearest opaque quad at every pixel's centre, before it is moved back by z_t; INFINITY
   // where there is none.
   std::vector<double> depth;
+  double depth_offset = 0;  // z_t that it was drawn with
   std::size_t skipped = 0;  // surfels without a filter (surfel_filter)
   std::size_t culled = 0;   // surfels that face away
 };

@@ -22,6 +22,8 @@ std::span<const Study> reproductions() {
       Study{"fig10", "normalisation of the weights: none, in a box, per surfel, per pixel",
             reproduce_figure10},
       Study{"fig11", "a checkerboard by the three algorithms", reproduce_figure11},
+      Study{"fig12", "models with textures of high frequency: stand-ins, and real ones where they are",
+            reproduce_figure12},
   };
   return kReproductions;
 }

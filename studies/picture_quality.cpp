@@ -1,0 +1,209 @@
+#include "studies/picture_quality.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+
+#include "studies/run.h"
+#include "traces/gamma.h"
+#include "traces/splat_trace.h"
+#include "traces/weight_capture.h"
+
+namespace splatscope::studies {
+namespace {
+
+constexpr int kSurfels = 100000;
+constexpr std::string_view kFiles[] = {"bunny.obj", "armadillo.off", "dragon.ply", "elephant.off"};
+constexpr std::string_view kGenerators[] = {"sphere", "salamander", "chameleon"};
+
+// How a scene splats: its table `splatting`.
+struct Setting {
+  std::string_view name;
+  std::string_view toml;
+};
+constexpr Setting kSettings[] = {{"defaults", ""}, {"c = 2, sigma = 0.71", "cutoff = 2\nsigma = 0.7071\n"}};
+
+// Sums of splats in double precision, as a machine with an exact frame buffer would leave them.
+Frame frame_of(const kernels::SplatSums& sums) {
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  Frame frame(static_cast<std::uint32_t>(sums.width), static_cast<std::uint32_t>(sums.height), formats);
+  for (std::size_t i = 0; i < sums.sums.size(); ++i) {
+    for (int c = 0; c < 4; ++c)
+      frame.colors32[i][static_cast<std::size_t>(c)] = static_cast<float>(sums.sums[i][c]);
+  }
+  return frame;
+}
+
+// The reference's renderer with weights per surfel; of a surfel with four weights their mean.
+Frame draw_exactly(const traces::Scene& scene, std::span<const traces::VertexWeights> weights) {
+  std::vector<kernels::Surfel> surfels = reference_surfels(scene);
+  for (std::size_t k = 0; k < surfels.size(); ++k) {
+    const traces::VertexWeights& w = weights[k];
+    surfels[k].weight = 0.25 * (double{w[0]} + w[1] + w[2] + w[3]);
+  }
+  return frame_of(screen_space_reference(scene, surfels));
+}
+
+Frame draw(const traces::Scene& scene, const traces::CapturedWeights& weights, const Machine& machine) {
+  return run_frame(traces::record(scene, weights).trace, machine, Fidelity::functional).rendered.frame;
+}
+
+nlohmann::ordered_json json_of(const Comparison& c) {
+  return {{"psnr_decibels", c.psnr},
+          {"psnr_off_edges_decibels", c.psnr_off_edges},
+          {"pixels_off_edges", c.pixels_off_edges},
+          {"surface_pixels", c.surface_pixels},
+          {"holes", c.holes},
+          {"inside_pixels", c.inside_pixels}};
+}
+
+nlohmann::ordered_json json_of(std::string_view setting, const QualityRow& row) {
+  return {{"splatting", setting},
+          {"model", row.name},
+          {"surfels", row.surfels},
+          {"per_pixel", json_of(row.per_pixel)},
+          {"exact_weights_double", json_of(row.exact)},
+          {"captured_weights_double", json_of(row.captured)},
+          {"captured_weights_float_frame", json_of(row.float_frame)},
+          {"per_surfel", json_of(row.per_surfel)},
+          {"capture_seconds", row.capture_seconds},
+          {"unseen", row.unseen}};
+}
+
+std::string head(std::string_view setting) {
+  return fmt::format(
+      "{}\n{:<14} {:>7} | {:^19} | {:^19} | {:^34} | {:>7}\n{:<14} {:>7} | {:>5} {:>6} {:>6} | {:>5} {:>6} "
+      "{:>6} "
+      "| {:>8} {:>8} {:>8} {:>7} | {:>7}\n",
+      setting, "", "", "per pixel", "per surfel", "per surfel off edges, step by step", "capture", "model",
+      "surfels", "all", "off e.", "holes", "all", "off e.", "holes", "exact", "captured", "float", "8 bits",
+      "");
+}
+
+std::string line(const QualityRow& r) {
+  return fmt::format(
+      "{:<14} {:>7} | {:>5.1f} {:>6.1f} {:>6} | {:>5.1f} {:>6.1f} {:>6} | {:>8.1f} {:>8.1f} {:>8.1f} "
+      "{:>7.1f} | "
+      "{:>5.1f} s\n",
+      r.name, r.surfels, r.per_pixel.psnr, r.per_pixel.psnr_off_edges, r.per_pixel.holes, r.per_surfel.psnr,
+      r.per_surfel.psnr_off_edges, r.per_surfel.holes, r.exact.psnr_off_edges, r.captured.psnr_off_edges,
+      r.float_frame.psnr_off_edges, r.per_surfel.psnr_off_edges, r.capture_seconds);
+}
+
+std::vector<std::string> cells(std::string_view setting, const QualityRow& r) {
+  const auto decibels = [](double value) { return fmt::format("{:.1f}", value); };
+  return {r.name,
+          std::string(setting),
+          decibels(r.per_pixel.psnr),
+          decibels(r.per_pixel.psnr_off_edges),
+          decibels(r.per_surfel.psnr),
+          decibels(r.per_surfel.psnr_off_edges),
+          fmt::format("{}", r.per_pixel.holes + r.per_surfel.holes),
+          decibels(r.exact.psnr_off_edges),
+          decibels(r.captured.psnr_off_edges),
+          decibels(r.float_frame.psnr_off_edges),
+          fmt::format("{:.1f}", r.capture_seconds)};
+}
+
+std::vector<ModelScene> all_models() {
+  std::vector<ModelScene> models = real_models(kModelsFolder);
+  for (const std::string_view generator : kGenerators)
+    models.push_back({std::string(generator), fmt::format("generator = \"{}\"\n", generator)});
+  return models;
+}
+
+}  // namespace
+
+std::vector<ModelScene> real_models(const std::filesystem::path& folder) {
+  std::vector<ModelScene> models;
+  for (const std::string_view file : kFiles) {
+    const std::filesystem::path path = std::filesystem::absolute(folder / file);
+    std::error_code error;
+    if (std::filesystem::exists(path, error))
+      models.push_back({path.stem().string(), fmt::format("file = '{}'\n", path.string())});
+  }
+  return models;
+}
+
+QualityRow quality_of(const std::string& name, traces::Scene scene, const Machine& machine,
+                      const Progress& progress) {
+  QualityRow row;
+  row.name = name;
+  row.surfels = scene.surfels.size();
+  const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
+  row.reference = picture_of(reference);
+
+  const auto start = std::chrono::steady_clock::now();
+  const traces::CapturedWeights captured = traces::capture_weights(
+      scene.surfels, scene.splatting, scene.capture, machine.numbers, part(progress, 0, 0.8));
+  row.capture_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  row.unseen = captured.unseen;
+  std::vector<traces::VertexWeights> exact;
+  for (const double sum : traces::filter_sums(scene.surfels, scene.splatting, 1))
+    exact.push_back(traces::equal_weights(1 / sum));
+
+  row.exact = compare(draw_exactly(scene, exact), reference);
+  row.captured = compare(draw_exactly(scene, captured.weights), reference);
+  Machine exact_frame = machine;
+  exact_frame.numbers.frame = FrameFormat::float32;
+  row.float_frame = compare(draw(scene, captured, exact_frame), reference);
+  const Frame frame = draw(scene, captured, machine);
+  row.per_surfel = compare(frame, reference);
+  row.picture = picture_of(frame);
+  scene.splatting.algorithm = traces::Algorithm::ewa_per_pixel;
+  const Trace per_pixel = traces::record(scene, machine.numbers).trace;
+  row.per_pixel = compare(run_frame(per_pixel, machine, Fidelity::functional).rendered.frame, reference);
+  if (progress) progress(1);
+  return row;
+}
+
+void study_quality(Findings& findings, const Progress& progress) {
+  const Machine machine = machine::load("geforce4-ti4400");
+  const std::vector<ModelScene> models = all_models();
+  findings.report().heading("Pictures of models against the double-precision reference");
+  auto list = nlohmann::ordered_json::array();
+  std::vector<std::vector<std::string>> table;
+  const double steps = static_cast<double>(std::size(kSettings) * models.size());
+  for (const auto& [setting, splatting] : kSettings) {
+    findings.say(head(setting));
+    for (const ModelScene& model : models) {
+      const traces::Scene scene = traces::parse_scene(
+          fmt::format("[surfels]\n{}count = {}\n[splatting]\n{}", model.toml, kSurfels, splatting),
+          model.name + ".toml");
+      const double done = static_cast<double>(list.size());
+      const QualityRow row =
+          quality_of(model.name, scene, machine, part(progress, done / steps, (done + 1) / steps));
+      findings.say(line(row));
+      list.push_back(json_of(setting, row));
+      table.push_back(cells(setting, row));
+      if (splatting.empty()) {
+        findings.pictures({{"quality-" + row.name, row.name + ", normalised per surfel", row.picture},
+                           {"quality-" + row.name + "-reference", "reference", row.reference}});
+      }
+    }
+  }
+  findings.result("quality", list);
+  using enum Report::Align;
+  findings.report().table(
+      fmt::format("{} surfels at 512 x 512. PSNR in dB over the surface, and off edges, of both "
+                  "normalisations; off edges also from exact weights in double precision, from captured "
+                  "weights in double precision, and from these with a float frame buffer; seconds of the "
+                  "capture of weights.",
+                  kSurfels),
+      {{"model"},
+       {"splatting"},
+       {"per pixel", number},
+       {"off edges", number},
+       {"per surfel", number},
+       {"off edges", number},
+       {"holes", number},
+       {"exact", number},
+       {"captured", number},
+       {"float frame", number},
+       {"capture, s", number}},
+      table);
+}
+
+}  // namespace splatscope::studies
