@@ -225,9 +225,10 @@ void connect_quads(Builder& build, const Units& u, Items& set_up, const Machine&
   }
 }
 
-// What a draw begins in, and what a clear writes.
-void set_commands(SimulatedMachine& machine, const Units& u, const Machine& spec,
-                  const MemoryLayout& layout) {
+// What a draw begins in, and what a clear writes and a flush writes back: what the draws `use`, whatever else
+// is there.
+void set_commands(SimulatedMachine& machine, const Units& u, const Machine& spec, const MemoryLayout& layout,
+                  const Needs& use) {
   std::vector<DrawUnit*> draw_units{u.fetch, u.assembly, u.setup, u.raster};
   draw_units.insert(draw_units.end(), u.vertex.begin(), u.vertex.end());
   for (DrawUnit* unit : {static_cast<DrawUnit*>(u.depth), static_cast<DrawUnit*>(u.texture),
@@ -236,8 +237,9 @@ void set_commands(SimulatedMachine& machine, const Units& u, const Machine& spec
   }
   u.command->set_draws(machine.jobs, draw_units);
   std::vector<CommandProcessor::Surface> cleared{{layout.color_address, layout.color.bytes()}};
-  if (u.depth && !spec.depth.fast_clear) cleared.push_back({layout.depth_address, layout.depth.bytes()});
-  u.command->set_frame(u.depth, spec.depth.fast_clear, u.blend, cleared);
+  if (use.depth && !spec.depth.fast_clear) cleared.push_back({layout.depth_address, layout.depth.bytes()});
+  u.command->set_frame(use.depth ? u.depth : nullptr, spec.depth.fast_clear, use.color ? u.blend : nullptr,
+                       cleared);
 }
 
 }  // namespace
@@ -281,7 +283,7 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraw
   connect_host(build, units);
   Items& set_up = connect_geometry(build, units, trace, spec);
   connect_quads(build, units, set_up, spec, layout);
-  set_commands(*machine, units, spec, layout);
+  set_commands(*machine, units, spec, layout, needs_of(trace));
   return machine;
 }
 
