@@ -122,7 +122,7 @@ TEST(Output, ReceivesColors) {
     for (std::size_t i = 0; i < given.size(); ++i) {
       EXPECT_EQ(static_cast<float>(quantize_unorm8(given[i])) / 255.0f, eight_bits[i]) << given[i];
       EXPECT_EQ(saturate(given[i]), floats[i]) << given[i];
-      EXPECT_NEAR(saturate(given[i]), twelve_bits[i], 0.5001 / 4095) << given[i];
+      EXPECT_NEAR(saturate(given[i]), twelve_bits[i], 0.5 / 4095 + 0x1p-25) << given[i];
       EXPECT_EQ(std::round(4095 * twelve_bits[i]) / 4095, twelve_bits[i]) << given[i];
     }
   });
