@@ -6,6 +6,7 @@
 #include "studies/exploration.h"
 #include "studies/fidelity.h"
 #include "studies/growth.h"
+#include "studies/hierarchy.h"
 #include "studies/picture_quality.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
@@ -27,6 +28,8 @@ std::span<const Study> own_studies() {
       Study{"quality",
             "pictures of models against the double-precision reference, and what keeps them from it",
             study_quality},
+      Study{"hierarchy", "blocks culled, levels chosen, frames refined (Ren 2002, section 6.2)",
+            study_hierarchy},
       Study{"exploration", "shorter programs, and the hardware that Ren 2002, section 9, wishes for",
             study_exploration},
   };
