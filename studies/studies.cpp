@@ -4,6 +4,7 @@
 
 #include "studies/alpha_texture.h"
 #include "studies/exploration.h"
+#include "studies/extremes.h"
 #include "studies/fidelity.h"
 #include "studies/growth.h"
 #include "studies/hierarchy.h"
@@ -32,6 +33,7 @@ std::span<const Study> own_studies() {
             study_hierarchy},
       Study{"exploration", "shorter programs, and the hardware that Ren 2002, section 9, wishes for",
             study_exploration},
+      Study{"extremes", "where the formulas of the paper break, and what guards cost", study_extremes},
   };
   return kStudies;
 }

@@ -10,21 +10,6 @@ namespace {
 
 const double kRadius = std::sqrt(2.0 * kCutoff);
 
-// Rot(theta) Lambda as the four corners show it.
-glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& u) {
-  return {(u[1] - u[0] + u[2] - u[3]) / (4.0 * kRadius), (u[3] - u[0] + u[2] - u[1]) / (4.0 * kRadius)};
-}
-
-// Largest relative deviation, over every direction of the screen, of the measured standard deviation from the
-// exact one: sqrt of the generalised eigenvalues of the two variance matrices, which J does not change.
-double deviation_error(const glm::dmat2& measured, const glm::dmat2& exact) {
-  const glm::dmat2 ratio = glm::inverse(exact) * measured;
-  const glm::dmat2 variance = ratio * glm::transpose(ratio);
-  const double mean = 0.5 * (variance[0][0] + variance[1][1]);
-  const double spread = std::hypot(0.5 * (variance[0][0] - variance[1][1]), variance[0][1]);
-  return std::max(std::sqrt(mean + spread) - 1.0, 1.0 - std::sqrt(std::max(0.0, mean - spread)));
-}
-
 // Largest distance of corresponding corners in pixels under `to_pixels`, for the best symmetry of the square.
 template <typename ToPixels>
 double corner_error(const std::array<glm::dvec2, 4>& u, const glm::dmat2& axes, const ToPixels& to_pixels) {
@@ -82,6 +67,18 @@ bool has_principal_axes(const SplatProgram& program) {
 }
 
 }  // namespace
+
+glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& u) {
+  return {(u[1] - u[0] + u[2] - u[3]) / (4.0 * kRadius), (u[3] - u[0] + u[2] - u[1]) / (4.0 * kRadius)};
+}
+
+double deviation_error(const glm::dmat2& measured, const glm::dmat2& exact) {
+  const glm::dmat2 ratio = glm::inverse(exact) * measured;
+  const glm::dmat2 variance = ratio * glm::transpose(ratio);
+  const double mean = 0.5 * (variance[0][0] + variance[1][1]);
+  const double spread = std::hypot(0.5 * (variance[0][0] - variance[1][1]), variance[0][1]);
+  return std::max(std::sqrt(mean + spread) - 1.0, 1.0 - std::sqrt(std::max(0.0, mean - spread)));
+}
 
 SplatErrors splat_errors(const SplatProgram& program, Arithmetic arithmetic, std::uint32_t seed, int count,
                          const SurfelRanges& ranges) {

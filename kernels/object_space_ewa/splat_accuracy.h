@@ -15,6 +15,13 @@ struct SplatErrors {
   int corners_compared = 0;
 };
 
+// Rot(theta) Lambda as the corners of a quad show it, in units of s and t.
+glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& corners);
+
+// Largest relative deviation, over every direction of the screen, of the standard deviation by `measured`
+// from that by `exact`.
+double deviation_error(const glm::dmat2& measured, const glm::dmat2& exact);
+
 // Over `count` random surfels before test_view(). Programs but paper and plain may draw any parallelogram of
 // the right variance matrix.
 SplatErrors splat_errors(const SplatProgram& program, Arithmetic arithmetic, std::uint32_t seed, int count,

@@ -1,0 +1,68 @@
+#include "studies/extremes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace splatscope::studies {
+namespace {
+
+Splatter splatter(std::string_view name) {
+  for (const Splatter& one : splatters()) {
+    if (one.name == name) return one;
+  }
+  ADD_FAILURE() << "no splatter " << name;
+  return {};
+}
+
+Sweep sweep(std::string_view name) {
+  for (const Sweep& one : extreme_sweeps()) {
+    if (one.name.starts_with(name)) return one;
+  }
+  ADD_FAILURE() << "no sweep " << name;
+  return {};
+}
+
+// Edge-on, q - t cancels: the printed formulas are wrong long before the program is.
+TEST(Extremes, printed_formulas_break_before_the_program) {
+  const SweepRow printed = sweep_row(sweep("cosine"), splatter("Appendix A as printed"), 100, 1);
+  const SweepRow program = sweep_row(sweep("cosine"), splatter("paper, ieee"), 100, 1);
+  ASSERT_FALSE(std::isnan(printed.over_1));
+  EXPECT_TRUE(std::isnan(program.over_1) || program.over_1 < 0.1 * printed.over_1);
+}
+
+// p = 0 with B < 0: Sgn(Bp) mirrors the ellipse.
+TEST(Extremes, the_printed_sign_mirrors_an_ellipse) {
+  const SweepRow printed = sweep_row(sweep("turn towards p = 0"), splatter("Appendix A as printed"), 1, 1);
+  EXPECT_FALSE(std::isnan(printed.over_10));
+  for (const std::string_view name : {"paper, ieee", "paper, nv20", "facing, ieee"}) {
+    EXPECT_TRUE(std::isnan(sweep_row(sweep("turn towards p = 0"), splatter(name), 1, 1).over_1)) << name;
+  }
+}
+
+// Each guard costs slots and repairs something.
+TEST(Extremes, guards_repair_what_they_are_for) {
+  for (const Guard& guard : guards()) {
+    SCOPED_TRACE(guard.name);
+    const GuardRow row = guard_row(guard, Arithmetic::ieee, 300, 1);
+    EXPECT_GT(row.slots, 0);
+    EXPECT_EQ(row.with.not_finite, 0);
+    EXPECT_GT(row.without.not_finite + row.without.too_wide, row.with.not_finite + row.with.too_wide);
+  }
+}
+
+// A sweep of docs/extremes.md, made again.
+TEST(Extremes, the_documentation_holds) {
+  std::ifstream file(SPLATSCOPE_SOURCE "/docs/extremes.md");
+  std::stringstream page;
+  page << file.rdbuf();
+  std::vector<SweepRow> rows;
+  for (const Splatter& one : splatters())
+    rows.push_back(sweep_row(sweep("cosine"), one, kSurfelsAValue, kExtremesSeed));
+  EXPECT_NE(page.str().find(text_of(rows)), std::string::npos) << text_of(rows);
+}
+
+}  // namespace
+}  // namespace splatscope::studies
