@@ -180,7 +180,7 @@ std::vector<Splatter> splatters() {
   return list;
 }
 
-std::vector<Sweep> extreme_sweeps() {
+std::vector<ExtremeSweep> extreme_sweeps() {
   const double step = std::sqrt(10.0);
   return {
       {"cosine of a surfel seen edge-on", powers(1, 1e-7, step), usual_view,
@@ -199,8 +199,9 @@ std::vector<Sweep> extreme_sweeps() {
   };
 }
 
-SweepRow sweep_row(const Sweep& sweep, const Splatter& splatter, int surfels_a_value, unsigned seed) {
-  SweepRow row{sweep.name, splatter.name, sweep.values, {}, NAN, NAN, NAN};
+ExtremeRow sweep_row(const ExtremeSweep& sweep, const Splatter& splatter, int surfels_a_value,
+                     unsigned seed) {
+  ExtremeRow row{sweep.name, splatter.name, sweep.values, {}, NAN, NAN, NAN};
   std::mt19937 generator(seed);
   for (const double value : sweep.values) {
     const View view = sweep.view(value);

@@ -29,21 +29,21 @@ struct Splatter {
 std::vector<Splatter> splatters();
 
 // One quantity taken from usual to extreme, with everything else usual.
-struct Sweep {
+struct ExtremeSweep {
   std::string name;  // "cosine", with its unit
   std::vector<double> values;
   std::function<kernels::View(double)> view;
   std::function<kernels::Surfel(const kernels::View&, double, std::mt19937&)> surfel;
 };
-std::vector<Sweep> extreme_sweeps();
+std::vector<ExtremeSweep> extreme_sweeps();
 
-struct SweepRow {
+struct ExtremeRow {
   std::string sweep, splatter;
   std::vector<double> values, errors;  // worst()
   // The first value whose error is over 1 %, 10 %, and all bounds (100 % or not finite); NaN where none is.
   double over_1 = 0, over_10 = 0, over_all = 0;
 };
-SweepRow sweep_row(const Sweep& sweep, const Splatter& splatter, int surfels_a_value, unsigned seed);
+ExtremeRow sweep_row(const ExtremeSweep& sweep, const Splatter& splatter, int surfels_a_value, unsigned seed);
 
 // A program with a guard taken out or put in, as edits of its text, and what the guard is worth on surfels of
 // all kinds.
@@ -66,7 +66,7 @@ struct GuardRow {
 };
 GuardRow guard_row(const Guard& guard, Arithmetic arithmetic, int surfels, unsigned seed);
 
-std::string text_of(std::span<const SweepRow> rows);
+std::string text_of(std::span<const ExtremeRow> rows);
 std::string line_of(const GuardRow& row, std::string_view arithmetic);
 
 // Of the study.

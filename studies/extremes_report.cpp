@@ -54,9 +54,9 @@ std::string text_of_special_inputs() {
 
 }  // namespace
 
-std::string text_of(std::span<const SweepRow> rows) {
+std::string text_of(std::span<const ExtremeRow> rows) {
   std::string text, sweep;
-  for (const SweepRow& row : rows) {
+  for (const ExtremeRow& row : rows) {
     if (row.sweep != sweep) {
       sweep = row.sweep;
       text +=
@@ -80,17 +80,17 @@ std::string line_of(const GuardRow& row, std::string_view arithmetic) {
 void study_extremes(Findings& findings, const Progress& progress) {
   constexpr int kOfAKind = 5000;
   findings.report().heading("Where the formulas break");
-  std::vector<SweepRow> rows;
+  std::vector<ExtremeRow> rows;
   Json list = Json::array();
   const auto sweeps = extreme_sweeps();
-  for (const Sweep& sweep : sweeps) {
+  for (const ExtremeSweep& sweep : sweeps) {
     Plot plot{.title = sweep.name,
               .x_label = sweep.name,
               .y_label = "relative error",
               .log_x = true,
               .log_y = true};
     for (const Splatter& splatter : splatters()) {
-      const SweepRow row = sweep_row(sweep, splatter, kSurfelsAValue, kExtremesSeed);
+      const ExtremeRow row = sweep_row(sweep, splatter, kSurfelsAValue, kExtremesSeed);
       plot.series.push_back({.name = row.splatter, .x = row.values, .y = row.errors});
       list.push_back({{"sweep", row.sweep},
                       {"splatter", row.splatter},

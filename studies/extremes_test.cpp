@@ -17,8 +17,8 @@ Splatter splatter(std::string_view name) {
   return {};
 }
 
-Sweep sweep(std::string_view name) {
-  for (const Sweep& one : extreme_sweeps()) {
+ExtremeSweep sweep(std::string_view name) {
+  for (const ExtremeSweep& one : extreme_sweeps()) {
     if (one.name.starts_with(name)) return one;
   }
   ADD_FAILURE() << "no sweep " << name;
@@ -27,15 +27,15 @@ Sweep sweep(std::string_view name) {
 
 // Edge-on, q - t cancels: the printed formulas are wrong long before the program is.
 TEST(Extremes, printed_formulas_break_before_the_program) {
-  const SweepRow printed = sweep_row(sweep("cosine"), splatter("Appendix A as printed"), 100, 1);
-  const SweepRow program = sweep_row(sweep("cosine"), splatter("paper, ieee"), 100, 1);
+  const ExtremeRow printed = sweep_row(sweep("cosine"), splatter("Appendix A as printed"), 100, 1);
+  const ExtremeRow program = sweep_row(sweep("cosine"), splatter("paper, ieee"), 100, 1);
   ASSERT_FALSE(std::isnan(printed.over_1));
   EXPECT_TRUE(std::isnan(program.over_1) || program.over_1 < 0.1 * printed.over_1);
 }
 
 // p = 0 with B < 0: Sgn(Bp) mirrors the ellipse.
 TEST(Extremes, the_printed_sign_mirrors_an_ellipse) {
-  const SweepRow printed = sweep_row(sweep("turn towards p = 0"), splatter("Appendix A as printed"), 1, 1);
+  const ExtremeRow printed = sweep_row(sweep("turn towards p = 0"), splatter("Appendix A as printed"), 1, 1);
   EXPECT_FALSE(std::isnan(printed.over_10));
   for (const std::string_view name : {"paper, ieee", "paper, nv20", "facing, ieee"}) {
     EXPECT_TRUE(std::isnan(sweep_row(sweep("turn towards p = 0"), splatter(name), 1, 1).over_1)) << name;
@@ -58,7 +58,7 @@ TEST(Extremes, the_documentation_holds) {
   std::ifstream file(SPLATSCOPE_SOURCE "/docs/extremes.md");
   std::stringstream page;
   page << file.rdbuf();
-  std::vector<SweepRow> rows;
+  std::vector<ExtremeRow> rows;
   for (const Splatter& one : splatters())
     rows.push_back(sweep_row(sweep("cosine"), one, kSurfelsAValue, kExtremesSeed));
   EXPECT_NE(page.str().find(text_of(rows)), std::string::npos) << text_of(rows);
