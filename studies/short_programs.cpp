@@ -68,9 +68,8 @@ std::vector<double> psnr_by_program(Drawing drawing, std::span<const std::string
 }  // namespace
 
 Rate rate_of(const sim::Result& timing) {
-  const auto busiest = std::ranges::max_element(timing.units, {}, &sim::UnitBooks::busy);
-  return {timing.frames_per_second(), busiest->name,
-          static_cast<double>(busiest->busy) / static_cast<double>(timing.cycles)};
+  const sim::UnitBooks& busiest = timing.busiest();
+  return {timing.frames_per_second(), busiest.name, timing.share(busiest.busy)};
 }
 
 std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const std::string_view> names,

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 
 #include "kernels/reference/fast_splatting.h"
+#include "studies/growth.h"
 #include "studies/reference_comparison.h"
 #include "traces/splat_trace.h"
 
@@ -31,21 +31,24 @@ double median_seconds(int repeats, const std::function<void()>& draw) {
   return seconds[seconds.size() / 2];
 }
 
+// Seconds of a renderer's frames over their pixels.
+Plot::Series series_of(std::span<const SoftwareRow> rows, std::string_view renderer) {
+  Plot::Series series{.name = std::string(renderer), .x = {}, .y = {}};
+  for (const SoftwareRow& row : rows) {
+    if (row.renderer != renderer) continue;
+    series.x.push_back(static_cast<double>(row.resolution) * row.resolution);
+    series.y.push_back(row.seconds);
+  }
+  return series;
+}
+
 Plot frame_plot(const std::vector<SoftwareRow>& rows) {
   Plot plot{.title = "Frame time against resolution",
             .x_label = "pixels",
             .y_label = "seconds a frame",
             .log_x = true,
             .log_y = true};
-  for (const std::string_view renderer : kRenderers) {
-    Plot::Series series{.name = std::string(renderer), .x = {}, .y = {}};
-    for (const SoftwareRow& row : rows) {
-      if (row.renderer != renderer) continue;
-      series.x.push_back(static_cast<double>(row.resolution) * row.resolution);
-      series.y.push_back(row.seconds);
-    }
-    plot.series.push_back(std::move(series));
-  }
+  for (const std::string_view renderer : kRenderers) plot.series.push_back(series_of(rows, renderer));
   return plot;
 }
 
@@ -131,13 +134,8 @@ std::vector<SoftwareRow> software_rows(traces::Scene scene, std::span<const int>
 }
 
 double growth(std::span<const SoftwareRow> rows, std::string_view renderer) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const SoftwareRow& row : rows) {
-    if (row.renderer != renderer) continue;
-    const double px = 2 * std::log(row.resolution), py = std::log(row.seconds);
-    n += 1, x += px, y += py, xx += px * px, xy += px * py;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
+  const Plot::Series series = series_of(rows, renderer);
+  return log_log_slope(series.x, series.y);
 }
 
 void study_software(Findings& findings, const Progress& progress) {
