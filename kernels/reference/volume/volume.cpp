@@ -1,0 +1,85 @@
+#include "kernels/reference/volume/volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace splatscope::kernels {
+namespace {
+
+// `at` of the voxel's neighbours along an axis, subtracted and divided by the voxels between them.
+template <class At>
+auto difference(const Volume& volume, const glm::ivec3& voxel, int axis, const At& at) {
+  glm::ivec3 before = voxel, after = voxel;
+  before[axis] = std::max(0, voxel[axis] - 1);
+  after[axis] = std::min(volume.size[axis] - 1, voxel[axis] + 1);
+  return (at(after) - at(before)) / static_cast<double>(std::max(1, after[axis] - before[axis]));
+}
+
+glm::dmat3 outer(const glm::dvec3& a, const glm::dvec3& b) {
+  return glm::outerProduct(a, b);
+}
+
+}  // namespace
+
+Volume centered_volume(const glm::ivec3& size, const glm::dvec3& spacing) {
+  Volume volume;
+  volume.size = size;
+  volume.spacing = spacing;
+  volume.origin = -0.5 * glm::dvec3(size - 1) * spacing;
+  volume.values.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+                       static_cast<std::size_t>(size.z));
+  return volume;
+}
+
+glm::dvec3 gradient(const Volume& volume, const glm::ivec3& voxel) {
+  glm::dvec3 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto value = [&](const glm::ivec3& at) { return static_cast<double>(volume.value(at)); };
+    result[axis] = difference(volume, voxel, axis, value) / volume.spacing[axis];
+  }
+  return result;
+}
+
+glm::dmat3 grid_variance(const Volume& volume, double kernel_variance) {
+  glm::dmat3 variance(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    variance[axis][axis] = kernel_variance * volume.spacing[axis] * volume.spacing[axis];
+  }
+  return variance;
+}
+
+std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
+                                              glm::dvec3 (*map)(const glm::dvec3&)) {
+  std::vector<VolumeSample> samples;
+  samples.reserve(grid.values.size());
+  glm::ivec3 voxel;
+  for (voxel.z = 0; voxel.z < grid.size.z; ++voxel.z) {
+    for (voxel.y = 0; voxel.y < grid.size.y; ++voxel.y) {
+      for (voxel.x = 0; voxel.x < grid.size.x; ++voxel.x) {
+        glm::dmat3 edges;  // of the voxel's cell after the map
+        for (int axis = 0; axis < 3; ++axis) {
+          edges[axis] =
+              difference(grid, voxel, axis, [&](const glm::ivec3& at) { return map(grid.position(at)); });
+        }
+        // The gradient by the new position: the transposed inverse of the map's Jacobian.
+        glm::dmat3 jacobian = edges;
+        for (int axis = 0; axis < 3; ++axis) jacobian[axis] /= grid.spacing[axis];
+        samples.push_back({.position = map(grid.position(voxel)),
+                           .variance = kernel_variance * (edges * glm::transpose(edges)),
+                           .cell = std::abs(glm::determinant(edges)),
+                           .gradient = glm::inverse(glm::transpose(jacobian)) * gradient(grid, voxel),
+                           .value = grid.value(voxel)});
+      }
+    }
+  }
+  return samples;
+}
+
+glm::dmat3 flattened(const glm::dmat3& variance, const glm::dvec3& normal, double s) {
+  const glm::dmat3 squeeze = glm::dmat3(1.0) - (1 - 1 / s) * outer(normal, normal);
+  return squeeze * variance * squeeze;
+}
+
+}  // namespace splatscope::kernels

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace splatscope::kernels {
+
+// Voxels on a regular or rectilinear grid (Zwicker 2002, section 6.2). Voxel (i, j, k) stands at origin + (i,
+// j, k) * spacing, in object units.
+struct Volume {
+  glm::ivec3 size{};          // voxels along x, y and z, each >= 1
+  glm::dvec3 spacing{1.0};    // object units between neighbours, each > 0
+  glm::dvec3 origin{};        // of voxel (0, 0, 0)
+  std::vector<float> values;  // finite; x varies fastest, then y
+
+  std::size_t index(const glm::ivec3& voxel) const {
+    return (static_cast<std::size_t>(voxel.z) * static_cast<std::size_t>(size.y) +
+            static_cast<std::size_t>(voxel.y)) *
+               static_cast<std::size_t>(size.x) +
+           static_cast<std::size_t>(voxel.x);
+  }
+  float value(const glm::ivec3& voxel) const { return values[index(voxel)]; }
+  glm::dvec3 position(const glm::ivec3& voxel) const { return origin + glm::dvec3(voxel) * spacing; }
+  glm::dvec3 extent() const { return glm::dvec3(size) * spacing; }  // a cell about every voxel
+  glm::dvec3 center() const { return origin + 0.5 * glm::dvec3(size - 1) * spacing; }
+};
+
+// All values 0, centred at the object space's origin.
+Volume centered_volume(const glm::ivec3& size, const glm::dvec3& spacing);
+
+// Central differences, one-sided at the faces and 0 along an axis of one voxel; values by object units.
+glm::dvec3 gradient(const Volume& volume, const glm::ivec3& voxel);
+
+// The variance of the kernels of a grid (Eq. 25): its squared spacings times `kernel_variance`, which is 1 in
+// the paper.
+glm::dmat3 grid_variance(const Volume& volume, double kernel_variance);
+
+// A voxel of a curvilinear or irregular data set, or one of a grid with a kernel of its own.
+struct VolumeSample {
+  glm::dvec3 position{};     // object units
+  glm::dmat3 variance{1.0};  // V_k of Eq. 25, object units squared; symmetric, positive definite
+  double cell = 1;           // object units cubed that it stands for
+  glm::dvec3 gradient{};     // values by object units
+  float value = 0;
+};
+
+// A curvilinear grid: the values of `grid` with its voxels moved by `map`. V_k = D V D^T with D the map's
+// differences between a voxel's neighbours, and the cell grows by |D|.
+std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
+                                              glm::dvec3 (*map)(const glm::dvec3&));
+
+// Eq. 37: V with its extent along `normal` (of unit length) divided by s. Flat kernels along the gradient are
+// surface splats among volume splats.
+glm::dmat3 flattened(const glm::dmat3& variance, const glm::dvec3& normal, double s);
+
+}  // namespace splatscope::kernels

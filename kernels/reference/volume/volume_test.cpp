@@ -1,0 +1,91 @@
+#include "kernels/reference/volume/volume.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "kernels/reference/volume/procedural.h"
+#include "kernels/reference/volume/transfer_function.h"
+
+namespace splatscope::kernels {
+namespace {
+
+// values = 2x - 3y + 5z in object units
+Volume ramp() {
+  Volume volume = centered_volume({4, 5, 6}, {0.5, 1, 2});
+  for (int z = 0; z < 6; ++z) {
+    for (int y = 0; y < 5; ++y) {
+      for (int x = 0; x < 4; ++x) {
+        const glm::dvec3 p = volume.position({x, y, z});
+        volume.values[volume.index({x, y, z})] = static_cast<float>(2 * p.x - 3 * p.y + 5 * p.z);
+      }
+    }
+  }
+  return volume;
+}
+
+TEST(Volume, GradientIsByObjectUnitsUpToTheFaces) {
+  const Volume volume = ramp();
+  for (const glm::ivec3 voxel : {glm::ivec3(1, 2, 3), glm::ivec3(0, 0, 0), glm::ivec3(3, 4, 5)}) {
+    EXPECT_EQ(gradient(volume, voxel), glm::dvec3(2, -3, 5));
+  }
+  EXPECT_EQ(gradient(constant_volume({1, 1, 1}, glm::dvec3(1)), {0, 0, 0}), glm::dvec3(0));
+}
+
+TEST(Volume, LiesAboutTheOrigin) {
+  const Volume volume = ramp();
+  EXPECT_EQ(volume.position({0, 0, 0}) + volume.position({3, 4, 5}), glm::dvec3(0));
+  EXPECT_EQ(volume.center(), glm::dvec3(0));
+  EXPECT_EQ(volume.extent(), glm::dvec3(2, 5, 12));
+}
+
+TEST(Volume, FlatteningShrinksAlongTheNormalAlone) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, 2));
+  const glm::dvec3 across = glm::normalize(glm::cross(normal, glm::dvec3(1, 0, 0)));
+  const glm::dmat3 flat = flattened(glm::dmat3(4.0), normal, 10);
+  EXPECT_NEAR(glm::dot(normal, flat * normal), 0.04, 1e-12);
+  EXPECT_NEAR(glm::dot(across, flat * across), 4, 1e-12);
+  EXPECT_NEAR(glm::dot(across, flat * normal), 0, 1e-12);
+}
+
+TEST(Volume, CurvilinearKernelsFollowTheMap) {
+  const auto samples = curvilinear_samples(
+      ramp(), 1, [](const glm::dvec3& p) { return glm::dvec3(p.y, 2 * p.x, p.z + 0.5 * p.y); });
+  const Volume grid = ramp();
+  ASSERT_EQ(samples.size(), grid.values.size());
+  for (const VolumeSample& sample : samples) {
+    EXPECT_NEAR(sample.cell, 2 * (0.5 * 1 * 2), 1e-12);  // the map doubles volumes
+    EXPECT_NEAR(glm::determinant(sample.variance), sample.cell * sample.cell, 1e-9);
+    // value = 2x - 3y + 5z with x = q/2, y = p, z = r - p/2
+    EXPECT_NEAR(glm::length(sample.gradient - glm::dvec3(-5.5, 1, 5)), 0, 1e-6);
+  }
+}
+
+TEST(Volume, ProceduralOnesHoldFiniteValuesFromZeroToOne) {
+  for (const Volume& volume : {marschner_lobb(20), concentric_shells(20, 3), zebra_texture(32, 16, 3, 0.25),
+                               head_stand_in({32, 32, 14})}) {
+    ASSERT_EQ(volume.values.size(), volume.index(volume.size - 1) + 1);
+    float low = 1, high = 0;
+    for (const float value : volume.values) {
+      ASSERT_TRUE(value >= 0 && value <= 1);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    EXPECT_LT(low, 0.15);
+    EXPECT_GT(high, 0.8);
+  }
+}
+
+TEST(TransferFunction, RunsStraightBetweenPointsAndStepsWhereTwoHaveOneValue) {
+  const TransferFunction function({{1, {0.2, {1, 0, 0}}}, {2, {0.6, {0, 1, 0}}}, {2, {0.9, {0, 0, 1}}}});
+  EXPECT_DOUBLE_EQ(function(0).opacity, 0.2);
+  EXPECT_DOUBLE_EQ(function(1.5).opacity, 0.4);
+  EXPECT_EQ(function(1.5).color, glm::dvec3(0.5, 0.5, 0));
+  EXPECT_DOUBLE_EQ(function(2).opacity, 0.9);
+  EXPECT_DOUBLE_EQ(function(3).opacity, 0.9);
+}
+
+}  // namespace
+}  // namespace splatscope::kernels
