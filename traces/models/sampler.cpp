@@ -60,11 +60,13 @@ class Sampler {
     const std::size_t cells = voxels_.cells.size();
     states_.resize(cells);
     places_.resize(cells * kPlaces);
+    around_.resize(cells);
     sampled_.resize(voxels_.triangles.size());
     tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t i) {
       states_[i].unsampled = static_cast<std::uint32_t>(voxels_.triangles_of(i).size());
       const SampledCell cell = seen(i);
       for (std::size_t p = 0; p < kPlaces; ++p) places_[i * kPlaces + p] = try_place(cell, p);
+      around_[i] = find_around(i);
     });
     points_.reserve(options.count);
     next_.reserve(options.count);
@@ -121,18 +123,11 @@ class Sampler {
     return project(mesh_, cell, cell.center + place * cell.dimensions);
   }
 
-  // Squared distance to the nearest point in this cell and those around it.
-  double room(const std::array<std::uint32_t, 27>& around, std::size_t count, const MeshSample& place) const {
-    double least = std::numeric_limits<double>::infinity();
-    const glm::dvec3 position(place.position);
-    for (std::size_t n = 0; n < count; ++n)
-      for (std::uint32_t p = states_[around[n]].last; p != kNone; p = next_[p])
-        least = std::min(least, distance2(glm::dvec3(points_[p].position), position));
-    return least;
-  }
+  // A cell and those around it, kNone after the last.
+  using Around = std::array<std::uint32_t, 28>;
 
-  // The cells around number i, itself among them, that have points.
-  std::size_t find_around(std::size_t i, std::array<std::uint32_t, 27>& around) const {
+  Around find_around(std::size_t i) const {
+    Around around;
     std::size_t count = 0;
     const glm::uvec3 at = voxels_.cells[i];
     for (unsigned z = 0; z < 3; ++z) {
@@ -140,21 +135,30 @@ class Sampler {
         for (unsigned x = 0; x < 3; ++x) {
           const glm::uvec3 place = at + glm::uvec3(x, y, z) - 1u;  // below 0 wraps to where no cell is
           const std::uint32_t found = index_.at(place);
-          if (found != kNone && states_[found].last != kNone) around[count++] = found;
+          if (found != kNone) around[count++] = found;
         }
       }
     }
-    return count;
+    around[count] = kNone;
+    return around;
+  }
+
+  // Squared distance to the nearest point in those cells.
+  double room(const Around& around, const MeshSample& place) const {
+    double least = std::numeric_limits<double>::infinity();
+    const glm::dvec3 position(place.position);
+    for (std::size_t n = 0; around[n] != kNone; ++n)
+      for (std::uint32_t p = states_[around[n]].last; p != kNone; p = next_[p])
+        least = std::min(least, distance2(glm::dvec3(points_[p].position), position));
+    return least;
   }
 
   void take_point(std::uint32_t i) {
-    std::array<std::uint32_t, 27> around;
-    const std::size_t count = find_around(i, around);
     MeshSample* best = nullptr;
     double most = -1;
     for (std::size_t p = 0; p < kPlaces; ++p) {
       MeshSample& place = places_[i * kPlaces + p];
-      const double distance = room(around, count, place);
+      const double distance = room(around_[i], place);
       if (!(distance > most)) continue;
       most = distance;
       best = &place;
@@ -198,7 +202,8 @@ class Sampler {
   Voxels voxels_;
   VoxelIndex index_;
   std::vector<State> states_;
-  std::vector<char> sampled_;       // of voxels_.triangles
+  std::vector<char> sampled_;  // of voxels_.triangles
+  std::vector<Around> around_;
   std::vector<MeshSample> places_;  // kPlaces a cell, ready to be taken
   std::vector<MeshSample> points_;
   std::vector<std::uint32_t> next_;  // point of the same cell

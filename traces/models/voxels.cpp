@@ -36,6 +36,7 @@ struct Part {
   std::vector<glm::uvec3> cells;
   std::vector<std::size_t> counts;  // of triangles
   std::vector<std::uint32_t> triangles;
+  std::vector<std::uint32_t> upper;  // of the cell being halved
 };
 
 // The halves of one cell that triangles overlap.
@@ -44,21 +45,28 @@ void halve(const Mesh& mesh, const Voxels& parents, const Voxels& children, int 
   glm::uvec3 place = parents.cells[cell];
   place[axis] *= 2;
   const double middle = children.low[axis] + (place[axis] + 1) * children.size[axis];
-  for (unsigned side = 0; side < 2; ++side, ++place[axis]) {
-    const glm::dvec3 center = children.low + (glm::dvec3(place) + 0.5) * children.size;
-    const std::size_t before = out.triangles.size();
-    for (std::uint32_t number : parents.triangles_of(cell)) {
-      const Triangle t = triangle_of(mesh, number);
-      const auto [least, most] = std::minmax({t[0][axis], t[1][axis], t[2][axis]});
-      // It overlaps the cell: where it is on one side of the middle it overlaps that half.
-      const bool inside = side == 0 ? most < middle : least > middle;
-      const bool outside = side == 0 ? least > middle : most < middle;
-      if (inside || (!outside && overlaps(t, center, 0.5 * children.size))) out.triangles.push_back(number);
-    }
-    if (out.triangles.size() == before) continue;
-    out.cells.push_back(place);
-    out.counts.push_back(out.triangles.size() - before);
+  const glm::dvec3 half = 0.5 * children.size;
+  const glm::dvec3 lower = children.low + (glm::dvec3(place) + 0.5) * children.size;
+  glm::dvec3 upper = lower;
+  upper[axis] += children.size[axis];
+  out.upper.clear();
+  const std::size_t before = out.triangles.size();
+  for (std::uint32_t number : parents.triangles_of(cell)) {
+    const Triangle t = triangle_of(mesh, number);
+    // It overlaps the cell: where it is on one side of the middle it overlaps that half alone.
+    const auto [least, most] = std::minmax({t[0][axis], t[1][axis], t[2][axis]});
+    if (most < middle || (least <= middle && overlaps(t, lower, half))) out.triangles.push_back(number);
+    if (least > middle || (most >= middle && overlaps(t, upper, half))) out.upper.push_back(number);
   }
+  const auto end_cell = [&](std::size_t count) {
+    if (count == 0) return;
+    out.cells.push_back(place);
+    out.counts.push_back(count);
+  };
+  end_cell(out.triangles.size() - before);
+  ++place[axis];
+  end_cell(out.upper.size());
+  out.triangles.insert(out.triangles.end(), out.upper.begin(), out.upper.end());
 }
 
 Voxels next_level(const Mesh& mesh, const Voxels& parents, int axis) {
@@ -99,12 +107,6 @@ VoxelIndex::VoxelIndex(const Voxels& voxels) {
 std::uint32_t VoxelIndex::at(const glm::uvec3& place) const {
   const auto found = numbers_.find(key(place));
   return found == numbers_.end() ? kNone : found->second;
-}
-
-Triangle triangle_of(const Mesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  return {glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
-          glm::dvec3(mesh.positions[t[2]])};
 }
 
 Voxels voxelize(const Mesh& mesh, int depth, std::size_t most_cells) {

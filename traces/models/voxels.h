@@ -49,6 +49,10 @@ inline constexpr int kMostHalvings = 20;  // of each axis
 // mended mesh with at least one triangle. The result does not depend on the number of threads.
 Voxels voxelize(const Mesh& mesh, int depth, std::size_t most_cells);
 
-Triangle triangle_of(const Mesh& mesh, std::uint32_t triangle);
+inline Triangle triangle_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
+          glm::dvec3(mesh.positions[t[2]])};
+}
 
 }  // namespace splatscope::traces
