@@ -43,13 +43,13 @@ int factor_of(BlendFactor factor, const BlendState& state, Color8 source, Color8
   return 0;
 }
 
-std::uint8_t round_sum(int sum, int offset) {
-  return static_cast<std::uint8_t>(std::min((std::max(sum, 0) + offset) / 255, 255));
+std::uint8_t rounded(int sum) {
+  return static_cast<std::uint8_t>(std::min((std::max(sum, 0) + 127) / 255, 255));
 }
 
 }  // namespace
 
-Color8 blend_unorm8(const BlendState& state, Color8 source, Color8 destination, int offset) {
+Color8 blend_unorm8(const BlendState& state, Color8 source, Color8 destination) {
   Color8 out{};
   for (std::size_t channel = 0; channel < 4; ++channel) {
     const int s = source[channel] * factor_of(state.source_factor, state, source, destination, channel);
@@ -57,13 +57,13 @@ Color8 blend_unorm8(const BlendState& state, Color8 source, Color8 destination, 
         destination[channel] * factor_of(state.destination_factor, state, source, destination, channel);
     switch (state.equation) {
       case BlendEquation::add:
-        out[channel] = round_sum(s + d, offset);
+        out[channel] = rounded(s + d);
         break;
       case BlendEquation::subtract:
-        out[channel] = round_sum(s - d, offset);
+        out[channel] = rounded(s - d);
         break;
       case BlendEquation::reverse_subtract:
-        out[channel] = round_sum(d - s, offset);
+        out[channel] = rounded(d - s);
         break;
       case BlendEquation::min:
         out[channel] = std::min(source[channel], destination[channel]);

@@ -40,9 +40,6 @@ struct BlendState {
 // out = clamp(floor((2*(src*sf OP dst*df) + 255) / 510)): one rounding to nearest of the exact sum over 255,
 // with 8-bit factors where 1 - f is 255 - f (read off the screens of an NV2A; docs: NV20 arithmetic, frame
 // buffer and raster).
-// Other roundings add `offset` (0 to 254, in 1/255 of a step) in place of the half: out = clamp(floor((src*sf
-// OP dst*df + offset) / 255)).
-inline constexpr int kRoundToNearest = 127;
-Color8 blend_unorm8(const BlendState& state, Color8 source, Color8 destination, int offset = kRoundToNearest);
+Color8 blend_unorm8(const BlendState& state, Color8 source, Color8 destination);
 
 }  // namespace splatscope

@@ -108,16 +108,27 @@ void write_colors(const std::array<const float*, 4>& colors, std::span<const std
     }
     return;
   }
-  if (!state.blend || (adds(state) && formats.frame_rounding == FrameRounding::nearest)) {
+  const bool nearest = formats.frame_rounding == FrameRounding::nearest;
+  if (!state.blend || (adds(state) && nearest)) {
     add_unorm8(colors, pixels, state, frame.colors8);
     return;
   }
   const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    Color8 source;
-    for (std::size_t c = 0; c < 4; ++c) source[c] = quantize_unorm8(colors[c][i]);
-    const auto offset = static_cast<int>(255 * offset_at(pixels[i], state, frame));
-    frame.colors8[pixels[i]] = blend_unorm8(blend, source, frame.colors8[pixels[i]], offset);
+    const Vec4 color{colors[0][i], colors[1][i], colors[2][i], colors[3][i]};
+    Color8& stored = frame.colors8[pixels[i]];
+    if (nearest) {
+      Color8 source;
+      for (std::size_t c = 0; c < 4; ++c) source[c] = quantize_unorm8(color[c]);
+      stored = blend_unorm8(blend, source, stored);
+      continue;
+    }
+    // A source that has been rounded to 8 bits leaves a sum nothing to round: other roundings take it as it
+    // comes, and round once.
+    const Vec4 sum = blended(color, frame.color(pixels[i]), state);
+    const double offset = offset_at(pixels[i], state, frame);
+    for (std::size_t c = 0; c < 4; ++c)
+      stored[c] = quantize_unorm8(stored_value(FrameFormat::unorm8, sum[c], offset));
   }
 }
 
