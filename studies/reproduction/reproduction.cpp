@@ -6,6 +6,7 @@
 #include "studies/reproduction/figure3.h"
 #include "studies/reproduction/table1.h"
 #include "studies/reproduction/table2.h"
+#include "studies/reproduction/zwicker_surfaces.h"
 
 namespace splatscope::studies {
 
@@ -24,6 +25,9 @@ std::span<const Study> reproductions() {
       Study{"fig11", "a checkerboard by the three algorithms", reproduce_figure11},
       Study{"fig12", "models with textures of high frequency: stand-ins, and real ones where they are",
             reproduce_figure12},
+      Study{"zwicker-fig17", "surface splatting in software: a head, terrain, a helicopter with glass",
+            reproduce_zwicker_figure17},
+      Study{"zwicker-table1", "frame rates of software surface splatting", reproduce_zwicker_table1},
   };
   return kReproductions;
 }
