@@ -1,0 +1,87 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernels/reference/row_bands.h"
+#include "kernels/reference/volume/volume_splats.h"
+#include "kernels/view.h"
+
+namespace splatscope::kernels {
+
+// The axis most parallel to the line of sight, and whether its last sheet is the nearest.
+struct SheetAxis {
+  int axis = 0;
+  bool last_is_nearest = false;
+};
+
+inline SheetAxis sheet_axis(const View& view) {
+  // Camera z grows along each object axis by the third row of W.
+  SheetAxis result;
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double slope = view.object_to_camera[axis][2];
+    if (std::abs(slope) <= most) continue;
+    most = std::abs(slope);
+    result = {axis, slope < 0};
+  }
+  return result;
+}
+
+inline constexpr std::size_t kSplatsAtOnce = 1 << 15;  // about: they stay in the cache between the two steps
+
+// Draws sheets from back to front, several at a time, so that their projected splats need little memory.
+// `prepare(numbers, splats, rows)` projects the splats of the given numbers into `splats`, where it may leave
+// some out, writes their rows, and returns how many they are; `Splat::sheet` tells the sheets apart.
+// `bands[i].add(splats, places)` adds splats to the sheet, `bands[i].composite()` puts it over the picture
+// and clears it. Returns how many splats were drawn.
+template <class Splat, class Band, class Prepare>
+std::size_t draw_sheets(const View& view, const SheetOrder& order, bool last_is_nearest,
+                        std::vector<Band>& bands, const Prepare& prepare) {
+  std::vector<Splat> splats;
+  std::vector<std::uint32_t> numbers, sheets;
+  std::size_t drawn = 0;
+  const auto flush = [&] {
+    splats.resize(numbers.size() + RowBands::kChunk);
+    const RowBands rows(
+        view.height, numbers.size(), [&](std::size_t begin, std::size_t end, RowRange* ranges) {
+          return prepare(std::span(numbers).subspan(begin, end - begin),
+                         std::span(sheets).subspan(begin, end - begin), splats.data() + begin, ranges);
+        });
+    drawn += rows.kept();
+    rows.for_each_band([&](int index) {
+      Band& band = bands[static_cast<std::size_t>(index)];
+      std::uint32_t sheet = 0;
+      rows.for_each_run(index, [&](std::span<const std::uint32_t> run) {
+        while (!run.empty()) {
+          if (splats[run.front()].sheet != sheet) band.composite();
+          sheet = splats[run.front()].sheet;
+          const auto end = std::ranges::find_if(run, [&](auto k) { return splats[k].sheet != sheet; });
+          const std::size_t same = static_cast<std::size_t>(end - run.begin());
+          band.add(splats, run.first(same));
+          run = run.subspan(same);
+        }
+      });
+      band.composite();
+    });
+    numbers.clear();
+    sheets.clear();
+  };
+  const std::size_t count = order.first.size() - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t sheet = last_is_nearest ? i : count - 1 - i;
+    const auto begin = order.splats.begin() + order.first[sheet],
+               end = order.splats.begin() + order.first[sheet + 1];
+    if (numbers.size() + static_cast<std::size_t>(end - begin) > kSplatsAtOnce && !numbers.empty()) flush();
+    numbers.insert(numbers.end(), begin, end);
+    sheets.resize(numbers.size(), static_cast<std::uint32_t>(sheet));
+  }
+  if (!numbers.empty()) flush();
+  return drawn;
+}
+
+}  // namespace splatscope::kernels
