@@ -115,6 +115,7 @@ typename A::Vector evaluate_in(Operation operation, const std::array<typename A:
       return each([&](std::size_t i) { return A::fraction(a[i]); });
     case Operation::load_address:
     case Operation::gather_constant:
+    case Operation::spread:
       break;
   }
   throw ModelError("not an arithmetic operation");

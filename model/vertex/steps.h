@@ -34,8 +34,9 @@ enum class Operation : std::uint8_t {
   exponent,
   logarithm,
   fraction,
-  load_address,    // a0.x of each vertex from source 0, x
-  gather_constant  // c[a0.x + constant_offset] into the scratch register
+  load_address,     // a0.x of each vertex from source 0, x
+  gather_constant,  // c[a0.x + constant_offset] into the scratch register
+  spread            // a register with a lane a group into that with a lane a vertex (groups.h)
 };
 
 // A register's place: which array of the workspace, and its index there.
@@ -81,7 +82,7 @@ struct Workspace {
   alignas(64) float scratch[4][kBatch];
   alignas(64) float broadcast[kConstants][4][kBroadcast];  // constants, once a SIMD lane
   alignas(64) std::int32_t address[kBatch];
-  std::array<Vec4, kConstants> constants;
+  std::array<Vec4, kConstants> constants{};  // those that a draw does not give are 0
 };
 
 // A step with its registers found: what the SIMD code runs.

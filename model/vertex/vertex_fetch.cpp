@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "model/vertex/groups.h"
+
 namespace splatscope::vertex {
 namespace {
 
@@ -46,6 +48,26 @@ void fetch(VertexFormat format, const std::byte* first, std::uint32_t stride,
   }
 }
 
+constexpr std::uint32_t kLargestCompared = 256;  // bytes of a vertex
+
+// The inputs in which the vertices of each group agree.
+unsigned agreeing_inputs(std::span<const VertexAttribute> attributes, std::span<const std::byte> buffer,
+                         std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers) {
+  std::uint32_t bytes = 0;
+  for (const VertexAttribute& attribute : attributes)
+    bytes = std::max(bytes, attribute.offset + size_of(attribute.format));
+  if (vertex_numbers.size() % kGroup != 0 || bytes > kLargestCompared) return 0;
+  std::array<std::uint8_t, kLargestCompared> differences;
+  find_differences(buffer, stride, vertex_numbers, std::span(differences).first(bytes));
+  unsigned agreeing = 0xffff;
+  for (const VertexAttribute& attribute : attributes) {
+    const auto own = std::span(differences).subspan(attribute.offset, size_of(attribute.format));
+    if (std::ranges::any_of(own, [](std::uint8_t differs) { return differs != 0; }))
+      agreeing &= ~(1u << attribute.input);
+  }
+  return agreeing;
+}
+
 }  // namespace
 
 std::uint32_t size_of(VertexFormat format) {
@@ -76,6 +98,22 @@ void fetch(std::span<const VertexAttribute> attributes, std::span<const std::byt
            std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers, InputBatch& out) {
   for (const VertexAttribute& attribute : attributes)
     fetch(attribute.format, buffer.data() + attribute.offset, stride, vertex_numbers, out.v[attribute.input]);
+}
+
+unsigned fetch_grouped(std::span<const VertexAttribute> attributes, std::span<const std::byte> buffer,
+                       std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers, InputBatch& out,
+                       InputBatch& grouped) {
+  const unsigned agreeing = agreeing_inputs(attributes, buffer, stride, vertex_numbers);
+  std::array<std::uint32_t, kBatch / kGroup> leaders;
+  const std::size_t groups = agreeing != 0 ? vertex_numbers.size() / kGroup : 0;
+  for (std::size_t group = 0; group < groups; ++group) leaders[group] = vertex_numbers[group * kGroup];
+  for (const VertexAttribute& attribute : attributes) {
+    const bool agrees = (agreeing >> attribute.input & 1u) != 0;
+    fetch(attribute.format, buffer.data() + attribute.offset, stride,
+          agrees ? std::span<const std::uint32_t>(leaders).first(groups) : vertex_numbers,
+          (agrees ? grouped : out).v[attribute.input]);
+  }
+  return agreeing;
 }
 
 }  // namespace splatscope::vertex

@@ -5,7 +5,10 @@
 #include <array>
 #include <cstring>
 #include <memory>
+#include <numeric>
 #include <vector>
+
+#include "model/testing/simd_targets.h"
 
 namespace splatscope::vertex {
 namespace {
@@ -52,6 +55,36 @@ TEST(VertexFetch, InputsWithoutAnAttributeHaveTheDefault) {
     EXPECT_EQ(batch->v[15][0][lane], 0.0f);
     EXPECT_EQ(batch->v[15][3][lane], 1.0f);
   }
+}
+
+// v1 is the same in each group of four vertices of 20 bytes, v2 is not, v3 has no attribute.
+TEST(VertexFetch, WhatGroupsAgreeInIsFetchedOnceAGroup) {
+  constexpr std::size_t kVertices = 12;
+  std::vector<float> buffer;
+  for (std::size_t vertex = 0; vertex < kVertices; ++vertex)
+    for (std::size_t word = 0; word < 5; ++word)
+      buffer.push_back(static_cast<float>(word < 3 ? vertex / kGroup : vertex));
+  const VertexAttribute attributes[] = {{1, VertexFormat::float3, 0}, {2, VertexFormat::float2, 12}};
+  std::vector<std::uint32_t> numbers(kVertices);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  const auto each = std::make_unique<InputBatch>(), grouped = std::make_unique<InputBatch>();
+  const auto fetch_them = [&] {
+    return fetch_grouped(attributes, std::as_bytes(std::span(buffer)), 20, numbers, *each, *grouped);
+  };
+  testing::on_each_simd_target([&] {
+    EXPECT_EQ(fetch_them(), 0xffffu & ~0b100u);
+    for (std::size_t lane = 0; lane < kVertices; ++lane) {
+      EXPECT_EQ(each->v[2][1][lane], static_cast<float>(lane));
+      EXPECT_EQ(grouped->v[1][2][lane / kGroup], static_cast<float>(lane / kGroup));
+    }
+  });
+  buffer[5 * (kVertices - 1) + 2] += 1;  // the last vertex, the last word of v1
+  testing::on_each_simd_target([&] {
+    EXPECT_EQ(fetch_them(), 0xffffu & ~0b110u);
+    EXPECT_EQ(each->v[1][2][kVertices - 1], 3.0f);
+  });
+  numbers.pop_back();  // no whole groups
+  EXPECT_EQ(fetch_them(), 0u);
 }
 
 }  // namespace

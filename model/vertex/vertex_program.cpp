@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/number/significand.h"
+#include "model/vertex/groups.h"
 #include "model/vertex/processor_mode.h"
 #include "model/vertex/steps.h"
 
@@ -16,6 +17,7 @@ struct VertexProgram::Decoded {
   int reciprocal_bits = 24;
   std::vector<Step> steps;
   std::size_t instructions = 0;
+  bool addresses = false;                               // some constant by a0
   std::vector<std::pair<std::uint16_t, Vec4>> defined;  // by `def`
   std::vector<std::uint16_t> constants_read;            // addressed directly
   std::vector<std::uint16_t> inputs_read;
@@ -52,71 +54,178 @@ void VertexProgram::Decoded::use(const Step& step,
   if (step.destination_place == Place::temporary) temporaries_written[destination] |= step.mask;
 }
 
+namespace {
+
+// The registers of a batch: a lane a vertex, or a lane a group.
+struct Lanes {
+  Lanes(const InputBatch& inputs, OutputBatch& outputs) : in(inputs), out(outputs) {}
+  const InputBatch& in;
+  OutputBatch& out;
+  Workspace workspace;
+};
+
+bool any_special(const float (&components)[4][kBatch], int count) {
+  const std::size_t lanes = (static_cast<std::size_t>(count) + kBroadcast - 1) / kBroadcast * kBroadcast;
+  return std::ranges::any_of(components,
+                             [&](const auto& component) { return holds_special(component, lanes); });
+}
+
+}  // namespace
+
 // The registers of a batch, and the steps with their places in them.
 class VertexProgram::Execution {
  public:
   Execution(const Decoded& program, std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out);
 
+  // Grouped inputs, and where to spread them.
+  void enable_groups(const InputBatch& grouped_in, InputBatch& in);
+
   // Sets what a batch starts with.
-  void begin(int count);
+  void begin(int count, unsigned grouped_inputs = 0);
 
   template <typename RunCall>
-  void run(int count, RunCall run_call) {
-    begin(count);
-    for (std::size_t i = 0; i < program_.steps.size(); ++i) run_step(i, count, run_call);
+  void run(int count, unsigned grouped_inputs, RunCall run_call) {
+    begin(count, grouped_inputs);
+    for (std::size_t i = 0; i < calls_.size(); ++i) run_step(i, count, run_call);
   }
 
+  // run_call(call, number of lanes)
   template <typename RunCall>
   void run_step(std::size_t i, int count, RunCall run_call) {
-    const Step& step = program_.steps[i];
-    if (is_address_step(step))
-      run_address_step(step, workspace_, in_, count);
-    else
-      run_call(calls_[i]);
-    if (program_.reciprocal_bits < 24) round_reciprocal(calls_[i], count);
+    const auto& [step, grouped] = planned_[i];
+    const Call& call = calls_[i];
+    const int lanes = grouped ? count / kGroup : count;
+    if (is_address_step(step)) {
+      run_address_step(step, each_.workspace, each_.in, count);
+    } else if (step.operation == Operation::spread) {
+      run_spread(call, count);
+    } else {
+      run_call(call, lanes);
+    }
+    if (program_.reciprocal_bits < 24) round_reciprocal(call, lanes);
   }
 
-  const Workspace& workspace() const { return workspace_; }
+  const Workspace& workspace() const { return each_.workspace; }
 
  private:
+  struct Groups {
+    Lanes lanes;
+    std::unique_ptr<OutputBatch> out;
+    InputBatch& spread_in;
+  };
+
+  void set_constants(std::span<const Vec4> constants, Workspace& workspace) const;
+  void plan(unsigned grouped_inputs);
+  Call resolve_spread(const Step& step);
+  static void run_spread(const Call& call, int count);
   void round_reciprocal(const Call& call, int count) const;
 
   const Decoded& program_;
-  const InputBatch& in_;
-  Workspace workspace_;
-  std::vector<Call> calls_;  // one a step
+  Lanes each_;
+  std::unique_ptr<Groups> groups_;
+  unsigned planned_for_ = 0;  // grouped inputs
+  std::vector<PlannedStep> planned_;
+  std::vector<Call> calls_;  // one a planned step
 };
 
 VertexProgram::Execution::Execution(const Decoded& program, std::span<const Vec4> constants,
                                     const InputBatch& in, OutputBatch& out)
-    : program_(program), in_(in) {
-  const auto given = std::min<std::size_t>(constants.size(), kConstants);
-  std::copy_n(constants.begin(), given, workspace_.constants.begin());
-  for (const auto& [index, value] : program.defined) workspace_.constants[index] = value;
-  for (const std::uint16_t index : program.constants_read) {
-    const Vec4& constant = workspace_.constants[index];
-    workspace_.special.constants[index] = std::ranges::any_of(constant, is_special);
-    for (std::size_t component = 0; component < 4; ++component)
-      std::fill_n(workspace_.broadcast[index][component], kBroadcast, constant[component]);
-  }
+    : program_(program), each_{in, out} {
+  set_constants(constants, each_.workspace);
   for (std::size_t output = 0; output < kOutputs; ++output)
     for (std::size_t component = 0; component < 4; ++component)
       if (!(program.written[output] & (1u << component)))
         std::fill_n(out.o[output][component], kBatch, output == oD0 ? 1.0f : 0.0f);
-  for (const Step& step : program.steps) calls_.push_back(resolve(step, workspace_, in, out));
+  plan(0);
 }
 
-void VertexProgram::Execution::begin(int count) {
+void VertexProgram::Execution::set_constants(std::span<const Vec4> constants, Workspace& workspace) const {
+  const auto given = std::min<std::size_t>(constants.size(), kConstants);
+  std::copy_n(constants.begin(), given, workspace.constants.begin());
+  for (const auto& [index, value] : program_.defined) workspace.constants[index] = value;
+  for (const std::uint16_t index : program_.constants_read) {
+    const Vec4& constant = workspace.constants[index];
+    workspace.special.constants[index] = std::ranges::any_of(constant, is_special);
+    for (std::size_t component = 0; component < 4; ++component)
+      std::fill_n(workspace.broadcast[index][component], kBroadcast, constant[component]);
+  }
+}
+
+void VertexProgram::Execution::enable_groups(const InputBatch& grouped_in, InputBatch& in) {
+  auto out = std::make_unique<OutputBatch>();
+  OutputBatch& grouped_out = *out;
+  groups_.reset(new Groups{{grouped_in, grouped_out}, std::move(out), in});
+  groups_->lanes.workspace = each_.workspace;  // its constants
+}
+
+void VertexProgram::Execution::plan(unsigned grouped_inputs) {
+  planned_for_ = grouped_inputs;
+  planned_.clear();
+  if (grouped_inputs != 0) {
+    planned_ = plan_groups(program_.steps, grouped_inputs);
+  } else {
+    for (const Step& step : program_.steps) planned_.push_back({step, false});
+  }
+  calls_.clear();
+  for (const auto& [step, grouped] : planned_) {
+    Lanes& lanes = grouped ? groups_->lanes : each_;
+    calls_.push_back(step.operation == Operation::spread
+                         ? resolve_spread(step)
+                         : resolve(step, lanes.workspace, lanes.in, lanes.out));
+  }
+}
+
+Call VertexProgram::Execution::resolve_spread(const Step& step) {
+  Call call;
+  call.operation = Operation::spread;
+  for (std::uint8_t component = 0; component < 4; ++component)
+    if (step.mask & (1u << component)) call.components[call.component_count++] = component;
+  const std::size_t index = step.destination_index;
+  const auto between = [&](const float(&from)[4][kBatch], bool& from_special, float(&to)[4][kBatch],
+                           bool& to_special) {
+    call.source_count = 1;
+    for (std::size_t component = 0; component < 4; ++component)
+      call.sources[0].component[component] = from[component];
+    call.sources[0].special = &from_special;
+    call.destination = to[0];
+    call.special = &to_special;
+  };
+  Lanes& grouped = groups_->lanes;
+  SpecialRegisters &from = grouped.workspace.special, &to = each_.workspace.special;
+  if (step.destination_place == Place::temporary) {
+    between(grouped.workspace.temporaries[index], from.temporaries[index], each_.workspace.temporaries[index],
+            to.temporaries[index]);
+  } else if (step.destination_place == Place::input) {
+    between(grouped.in.v[index], from.inputs[index], groups_->spread_in.v[index], to.inputs[index]);
+  } else {
+    between(grouped.out.o[index], from.outputs, each_.out.o[index], to.outputs);
+  }
+  return call;
+}
+
+void VertexProgram::Execution::run_spread(const Call& call, int count) {
+  for (std::size_t k = 0; k < call.component_count; ++k) {
+    const std::size_t component = call.components[k];
+    spread(call.sources[0].component[component], call.destination + component * kBatch, count);
+  }
+  *call.special |= *call.sources[0].special;
+}
+
+void VertexProgram::Execution::begin(int count, unsigned grouped_inputs) {
+  if (grouped_inputs != planned_for_) plan(grouped_inputs);
+  Workspace& workspace = each_.workspace;
   for (const std::uint16_t index : program_.temporaries_read_first)
-    std::fill_n(workspace_.temporaries[index][0], 4 * kBatch, 0.0f);
-  std::fill_n(workspace_.address, kBatch, 0);
+    std::fill_n(workspace.temporaries[index][0], 4 * kBatch, 0.0f);
+  if (program_.addresses) std::fill_n(workspace.address, kBatch, 0);
   if (program_.arithmetic == Arithmetic::ieee) return;
-  workspace_.special.temporaries = {};
-  const std::size_t lanes = (static_cast<std::size_t>(count) + kBroadcast - 1) / kBroadcast * kBroadcast;
+  workspace.special.temporaries = {};
+  if (grouped_inputs != 0) groups_->lanes.workspace.special.temporaries = {};
   for (const std::uint16_t index : program_.inputs_read) {
-    bool special = false;
-    for (const auto& component : in_.v[index]) special |= holds_special(component, lanes);
-    workspace_.special.inputs[index] = special;
+    const bool grouped = (grouped_inputs >> index & 1u) != 0;
+    workspace.special.inputs[index] = !grouped && any_special(each_.in.v[index], count);
+    if (grouped)
+      groups_->lanes.workspace.special.inputs[index] =
+          any_special(groups_->lanes.in.v[index], count / kGroup);
   }
 }
 
@@ -139,6 +248,7 @@ VertexProgram::VertexProgram(const isa::Program& program, Arithmetic arithmetic,
     decoded_->defined.emplace_back(definition.index, definition.values);
   std::array<std::uint8_t, kTemporaries> temporaries_written{};
   for (const Step& step : decoded_->steps) decoded_->use(step, temporaries_written);
+  decoded_->addresses = std::ranges::any_of(decoded_->steps, is_address_step);
 }
 
 std::vector<VertexState> VertexProgram::trace(std::span<const Vec4> constants, const InputBatch& in) const {
@@ -161,8 +271,9 @@ std::vector<VertexState> VertexProgram::trace(std::span<const Vec4> constants, c
   std::size_t step = 0;
   for (std::size_t instruction = 0; instruction < decoded_->instructions; ++instruction) {
     for (; step < decoded_->steps.size() && decoded_->steps[step].instruction == instruction; ++step)
-      execution->run_step(step, 1,
-                          [&](const Call& call) { vertex::run_scalar(call, decoded_->arithmetic, 0, 1); });
+      execution->run_step(step, 1, [&](const Call& call, int count) {
+        vertex::run_scalar(call, decoded_->arithmetic, 0, count);
+      });
     states.push_back(state());
   }
   return states;
@@ -176,32 +287,34 @@ bool VertexProgram::reads(int input) const {
   return std::ranges::count(decoded_->inputs_read, input) != 0;
 }
 
-void VertexProgram::run_batch(Execution& execution, int count) const {
+void VertexProgram::run_batch(Execution& execution, int count, unsigned grouped_inputs) const {
   if (decoded_->arithmetic == Arithmetic::ieee) {
-    execution.run(count, [&](const Call& call) { run_simd_ieee(call, count); });
+    execution.run(count, grouped_inputs, run_simd_ieee);
   } else {
     const Nv20Mode mode;
-    execution.run(count, [&](const Call& call) { run_simd_nv20(call, count); });
+    execution.run(count, grouped_inputs, run_simd_nv20);
   }
 }
 
 void VertexProgram::run(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out,
                         int count) const {
-  run_batch(*std::make_unique<Execution>(*decoded_, constants, in, out), count);
+  run_batch(*std::make_unique<Execution>(*decoded_, constants, in, out), count, 0);
 }
 
 void VertexProgram::run_scalar(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out,
                                int count) const {
-  std::make_unique<Execution>(*decoded_, constants, in, out)->run(count, [&](const Call& call) {
-    vertex::run_scalar(call, decoded_->arithmetic, 0, count);
+  std::make_unique<Execution>(*decoded_, constants, in, out)->run(count, 0, [&](const Call& call, int lanes) {
+    vertex::run_scalar(call, decoded_->arithmetic, 0, lanes);
   });
 }
 
 struct VertexProgram::Bound::State {
   State(const VertexProgram& bound, std::span<const Vec4> constants)
-      : program(bound), execution(*bound.decoded_, constants, in, out) {}
+      : program(bound), execution(*bound.decoded_, constants, in, out) {
+    execution.enable_groups(grouped_in, in);
+  }
   const VertexProgram& program;
-  InputBatch in{};
+  InputBatch in{}, grouped_in{};
   OutputBatch out;
   Execution execution;
 };
@@ -215,11 +328,16 @@ VertexProgram::Bound& VertexProgram::Bound::operator=(Bound&&) noexcept = defaul
 InputBatch& VertexProgram::Bound::input() {
   return state_->in;
 }
+InputBatch& VertexProgram::Bound::grouped_input() {
+  return state_->grouped_in;
+}
 const OutputBatch& VertexProgram::Bound::output() const {
   return state_->out;
 }
-void VertexProgram::Bound::run(int count) {
-  state_->program.run_batch(state_->execution, count);
+void VertexProgram::Bound::run(int count, unsigned grouped_inputs) {
+  unsigned read = 0;
+  for (const std::uint16_t index : state_->program.decoded_->inputs_read) read |= 1u << index;
+  state_->program.run_batch(state_->execution, count, grouped_inputs & read);
 }
 
 }  // namespace splatscope::vertex

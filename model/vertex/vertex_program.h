@@ -13,6 +13,7 @@
 namespace splatscope::vertex {
 
 inline constexpr int kBatch = 64;  // vertices executed together
+inline constexpr int kGroup = 4;   // successive vertices that may have inputs in common
 
 // Output registers in the order of this array: oPos, oD0, oD1, oT0..oT7, oFog (x), oPts (x).
 enum Output : int { oPos = 0, oD0 = 1, oD1 = 2, oT0 = 3, oFog = 11, oPts = 12, kOutputs = 13 };
@@ -57,9 +58,12 @@ class VertexProgram {
     Bound& operator=(Bound&&) noexcept;
 
     InputBatch& input();
+    // Inputs in which the vertices of each group agree, a lane a group.
+    InputBatch& grouped_input();
     const OutputBatch& output() const;
-    // Runs vertices 0..count-1 (count <= kBatch) of input().
-    void run(int count);
+    // Runs vertices 0..count-1 (count <= kBatch) of input(). The inputs in `grouped_inputs` (bit n: v<n>) are
+    // taken from grouped_input() instead; `count` is then a multiple of kGroup. The same bits, sooner.
+    void run(int count, unsigned grouped_inputs = 0);
 
    private:
     struct State;
@@ -76,7 +80,7 @@ class VertexProgram {
  private:
   struct Decoded;
   class Execution;
-  void run_batch(Execution& execution, int count) const;
+  void run_batch(Execution& execution, int count, unsigned grouped_inputs) const;
   std::unique_ptr<Decoded> decoded_;
 };
 

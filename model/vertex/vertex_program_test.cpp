@@ -80,6 +80,8 @@ TEST(VertexProgram, RelativeAddressesFloorAndReadZeroOutside) {
             (Vec4{10, 20, 30, 40}));
   EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.y\nmov oPos, c[a0.x + 1]", oPos),
             (Vec4{0, 0, 0, 0}));
+  EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.x\nmov oPos, c[a0.x + 60]", oPos),
+            (Vec4{0, 0, 0, 0}));  // not given
   EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.w\nmov oPos, c[a0.x]", oPos), (Vec4{0, 0, 0, 0}));
   EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.z\nmov oPos, c[a0.x + 95]", oPos),
             (Vec4{0, 0, 0, 0}));
@@ -91,14 +93,15 @@ TEST(VertexProgram, WhatIsNotWrittenIsZeroAndTheDiffuseColourOne) {
   EXPECT_EQ(run("mov oPos, v0\nmov oT0.xy, v0", oT0), (Vec4{1, 2, 0, 0}));
 }
 
-// A random valid program over r0..r5, v0, c0..c7.
+// A random valid program over r0..r5, v0, v1, c0..c7.
 class RandomProgram {
  public:
   explicit RandomProgram(std::mt19937& random) : random_(random) {}
 
   std::string text() {
     std::string result = "vs_1_1\nmov a0.x, c0.x\n";
-    for (int r = 0; r < 6; ++r) result += fmt::format("mov r{}, {}\n", r, r % 2 ? "v0" : "c1");
+    for (int r = 0; r < 6; ++r)
+      result += fmt::format("mov r{}, {}\n", r, r % 3 == 0 ? "v0" : r % 3 == 1 ? "v1" : "c1");
     for (int i = 0; i < 40; ++i) result += instruction();
     for (int r = 0; r < 6; ++r) result += fmt::format("mov oT{}, r{}\n", r, r);
     return result + "mov oPos, r0\n";
@@ -114,7 +117,7 @@ class RandomProgram {
   }
 
   std::string source(int kind, bool scalar) {
-    const std::string names[] = {fmt::format("r{}", pick(6)), "v0", constant_};
+    const std::string names[] = {fmt::format("r{}", pick(6)), input_, constant_};
     return (pick(2) ? "-" : "") + names[kind] + (scalar ? swizzle(1) : pick(2) ? swizzle(4) : "");
   }
 
@@ -125,6 +128,7 @@ class RandomProgram {
     using enum isa::Opcode;
     const auto op = info->opcode;
     const bool scalar = op == rcp || op == rsq || op == exp || op == expp || op == log || op == logp;
+    input_ = pick(4) ? "v1" : "v0";  // an instruction reads one input register
     constant_ = pick(4) ? fmt::format("c{}", pick(8)) : fmt::format("c[a0.x + {}]", pick(8));
     const std::string_view masks[] = {"", ".x", ".yz", ".xw", ".yzw", ".xy"};
     std::string result = fmt::format("{} r{}{}", info->name, pick(6), op == frc ? ".xy" : masks[pick(6)]);
@@ -133,7 +137,7 @@ class RandomProgram {
   }
 
   std::mt19937& random_;
-  std::string constant_;
+  std::string constant_, input_;
 };
 
 enum class Values { special, moderate, finite };
@@ -157,31 +161,46 @@ float random_value(std::mt19937& random, Values values) {
   }
 }
 
+void expect_same_bits(const OutputBatch& is, const OutputBatch& expected, int count) {
+  for (int o = 0; o < kOutputs; ++o)
+    for (int c = 0; c < 4; ++c)
+      for (int lane = 0; lane < count; ++lane)
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(is.o[o][c][lane]),
+                  std::bit_cast<std::uint32_t>(expected.o[o][c][lane]))
+            << "output " << o << '.' << c << ", vertex " << lane;
+}
+
+// The vertices of each group agree in v1.
 void compare_simd_targets_with_scalar(Arithmetic arithmetic) {
   const unsigned seed = std::random_device{}();
   std::mt19937 random(seed);
   for (int trial = 0; trial < 100; ++trial) {
+    const auto value = [&] { return random_value(random, static_cast<Values>(trial % 3)); };
     const std::string text = RandomProgram(random).text();
+    SCOPED_TRACE(fmt::format("seed {}\n{}", seed, text));
     const VertexProgram program(isa::assemble(text, "random"), arithmetic);
-    Batches batch;
-    for (auto& component : batch.in->v[0])
-      for (float& value : component) value = random_value(random, static_cast<Values>(trial % 3));
     std::vector<Vec4> constants(8);
     for (Vec4& constant : constants)
-      for (float& value : constant) value = random_value(random, static_cast<Values>(trial % 3));
+      for (float& component : constant) component = value();
+    Batches batch;
+    VertexProgram::Bound bound(program, constants);
+    for (std::size_t c = 0; c < 4; ++c) {
+      for (std::size_t lane = 0; lane < kBatch; ++lane) {
+        batch.in->v[0][c][lane] = bound.input().v[0][c][lane] = value();
+        if (lane % kGroup == 0) bound.grouped_input().v[1][c][lane / kGroup] = value();
+        batch.in->v[1][c][lane] = bound.grouped_input().v[1][c][lane / kGroup];
+      }
+    }
     const auto scalar = std::make_unique<OutputBatch>();
-    const int count = 1 + static_cast<int>(random() % kBatch);
+    const int count = 1 + static_cast<int>(random() % kBatch), whole_groups = count / kGroup * kGroup;
     program.run_scalar(constants, *batch.in, *scalar, count);
     testing::on_each_simd_target([&] {
       program.run(constants, *batch.in, *batch.out, count);
-      for (int o = 0; o < kOutputs; ++o)
-        for (int c = 0; c < 4; ++c)
-          for (int lane = 0; lane < count; ++lane)
-            ASSERT_EQ(std::bit_cast<std::uint32_t>(batch.out->o[o][c][lane]),
-                      std::bit_cast<std::uint32_t>(scalar->o[o][c][lane]))
-                << "seed " << seed << ", output " << o << '.' << c << ", vertex " << lane << '\n'
-                << text;
+      expect_same_bits(*batch.out, *scalar, count);
+      bound.run(whole_groups, 0b10);
+      expect_same_bits(bound.output(), *scalar, whole_groups);
     });
+    if (::testing::Test::HasFailure()) return;
   }
 }
 
