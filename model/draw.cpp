@@ -1,51 +1,159 @@
 #include "model/draw.h"
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_pipeline.h>
+#include <oneapi/tbb/task_arena.h>
 
-#include <bit>
+#include <algorithm>
+#include <atomic>
 #include <memory>
 
 #include "model/fragment_pipe.h"
 #include "model/geometry.h"
+#include "model/output/output.h"
 
 namespace splatscope {
 namespace {
 
 constexpr std::size_t kBatchesInFlight = 4;
+// Pixels of the rectangles of a batch's triangles: with more its fragments are not kept until it is their
+// turn to be written.
+constexpr std::int64_t kMostPixelsKept = 1 << 18;
 
-// Everything behind the setup, triangle by triangle.
-class RasterStage {
+// Colours of fragments that wait to be written, in order.
+struct ShadedFragments {
+  alignas(64) float colors[4][FragmentPipe::kCapacity];
+  std::uint32_t pixels[FragmentPipe::kCapacity];
+  std::size_t count = 0;
+};
+
+// Windows of one piece of a triangle in one band.
+struct Band {
+  std::size_t piece = 0;
+  std::size_t first = 0, count = 0;  // of the batch's windows
+};
+
+// A batch of triangles on its way.
+class Batch {
  public:
-  RasterStage(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
-              RenderCounters& counters)
+  Batch(const DrawBindings& bindings, const RenderOptions& options, Frame& frame)
+      : geometry(bindings, options, primitive::Viewport{frame.width, frame.height}),
+        pipe(bindings, frame, options.record_work ? &work : nullptr,
+             [this](const auto& colors, auto pixels) { take(colors, pixels); }),
+        state_(bindings.draw.state),
+        frame_(frame) {}
+
+  void begin(bool write_at_once) {
+    at_once = write_at_once;
+    work = {};
+    windows.clear();
+    bands.clear();
+    shaded_count_ = 0;
+  }
+
+  void write() {
+    for (const ShadedFragments& fragments : std::span(shaded_).first(shaded_count_)) {
+      const auto& [r, g, b, a] = fragments.colors;
+      output::write_colors({r, g, b, a}, {fragments.pixels, fragments.count}, state_, frame_);
+    }
+  }
+
+  GeometryBatch geometry;
+  DrawWork work;
+  FragmentPipe pipe;
+  bool at_once = false;  // depth, shading and writing together, when its turn to be written comes
+  std::vector<raster::Window> windows;
+  std::vector<Band> bands;
+
+ private:
+  void take(const FragmentPipe::Colors& colors, std::span<const std::uint32_t> pixels) {
+    if (at_once) return output::write_colors(colors, pixels, state_, frame_);
+    if (shaded_count_ == shaded_.size()) shaded_.emplace_back();
+    ShadedFragments& fragments = shaded_[shaded_count_++];
+    for (std::size_t c = 0; c < 4; ++c) std::copy_n(colors[c], pixels.size(), fragments.colors[c]);
+    std::ranges::copy(pixels, fragments.pixels);
+    fragments.count = pixels.size();
+  }
+
+  const DrawState& state_;
+  Frame& frame_;
+  std::vector<ShadedFragments> shaded_;
+  std::size_t shaded_count_ = 0;
+};
+
+// The stages of a draw behind the geometry: depth is tested and colours are written batch by batch, in their
+// order; what lies between knows no order.
+class DrawStages {
+ public:
+  DrawStages(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
+             RenderCounters& counters)
       : state_(bindings.draw.state),
         record_(options.record_work),
         work_(work),
         counters_(counters),
-        fragments_(bindings, frame, record_ ? &work : nullptr),
         depth_{frame.depth,
                {frame.width, frame.height},
                frame.formats.depth,
                state_.depth_test,
                state_.depth_write} {}
 
-  void draw(const GeometryBatch& batch) {
-    counters_.vertices += batch.shaded_vertices.size();
-    if (record_) {
-      work_.shaded_vertices.insert(work_.shaded_vertices.end(), batch.shaded_vertices.begin(),
-                                   batch.shaded_vertices.end());
+  // One batch at a time.
+  void test_depth(Batch& batch) {
+    // Behind one whose depth is still to be tested all have to wait with theirs.
+    batch.begin(waiting_.load(std::memory_order_acquire) != 0 ||
+                batch.geometry.pixels_at_most() > kMostPixelsKept);
+    if (batch.at_once) {
+      waiting_.fetch_add(1, std::memory_order_relaxed);
+      return;
     }
-    std::size_t piece = 0;
-    for (const BatchTriangle& triangle : batch.triangles) {
-      draw(triangle, batch, piece);
-      piece += triangle.pieces;
-    }
-    fragments_.end();
+    rasterize(batch, [&](std::size_t piece, std::span<const raster::Window> windows) {
+      batch.bands.push_back({piece, batch.windows.size(), windows.size()});
+      batch.windows.insert(batch.windows.end(), windows.begin(), windows.end());
+    });
   }
 
-  void finish() { fragments_.flush(); }
+  // Any number of batches at a time.
+  static void shade(Batch& batch) {
+    if (batch.at_once) return;
+    for (const Band& band : batch.bands)
+      shade(batch, band.piece, std::span(batch.windows).subspan(band.first, band.count));
+    batch.pipe.flush_all();
+  }
+
+  // One batch at a time.
+  void write(Batch& batch) {
+    if (batch.at_once) {
+      do_at_once(batch);
+      waiting_.fetch_sub(1, std::memory_order_release);
+    } else {
+      batch.write();
+    }
+    if (record_) append(batch);
+  }
+
+  // All of it, where there is but one thread.
+  void test_shade_and_write(Batch& batch) {
+    batch.begin(true);
+    do_at_once(batch);
+    if (record_) append(batch);
+  }
 
  private:
+  static void shade(Batch& batch, std::size_t piece, std::span<const raster::Window> windows) {
+    if (!batch.pipe.began(piece)) {
+      const Piece next = batch.geometry.piece(piece);
+      batch.pipe.begin(piece, next.setup, next.corners);
+    }
+    batch.pipe.push_band(windows);
+  }
+
+  void do_at_once(Batch& batch) {
+    rasterize(batch, [&](std::size_t piece, std::span<const raster::Window> windows) {
+      shade(batch, piece, windows);
+    });
+    batch.pipe.flush_all();
+  }
+
   // Whether the draw's cull mode drops a piece. What decides is the sign on the grid that decides coverage,
   // so a triangle that is dropped and its neighbour that is not never share a pixel.
   bool culled(const Piece& piece) const {
@@ -60,62 +168,43 @@ class RasterStage {
     return false;
   }
 
-  // `first`: of its pieces in the batch.
-  void draw(const BatchTriangle& triangle, const GeometryBatch& batch, std::size_t first) {
-    TriangleWork work;
-    work.outcome = triangle.outcome;
-    work.new_vertices = triangle.new_vertices;
-    work.pieces = 0;
-    for (std::size_t i = 0; i < triangle.pieces; ++i) {
-      const Piece piece = batch.piece(first + i);
-      if (culled(piece)) continue;
-      ++work.pieces;
-      if (piece.setup.covers) rasterize(piece, work);
+  // Coverage and depth; take(piece, windows) gets the windows of each band in which there is something to
+  // shade or to record.
+  template <typename Take>
+  void rasterize(Batch& batch, Take take) {
+    counters_.vertices += batch.geometry.shaded_vertices.size();
+    std::size_t first = 0;
+    for (const BatchTriangle& triangle : batch.geometry.triangles) {
+      TriangleWork work;
+      work.outcome = triangle.outcome;
+      work.new_vertices = triangle.new_vertices;
+      work.pieces = 0;
+      for (std::size_t piece = first; piece < first + triangle.pieces; ++piece) {
+        if (culled(batch.geometry.piece(piece))) continue;
+        ++work.pieces;
+        rasterize(piece, batch.geometry.piece(piece).setup, work, take);
+      }
+      first += triangle.pieces;
+      if (work.pieces == 0 && triangle.pieces != 0) work.outcome = TriangleOutcome::back_facing;
+      if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
+        work.outcome = TriangleOutcome::no_coverage;
+      count(work);
+      if (record_) batch.work.triangles.push_back(work);
     }
-    if (work.pieces == 0 && triangle.pieces != 0) work.outcome = TriangleOutcome::back_facing;
-    if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
-      work.outcome = TriangleOutcome::no_coverage;
-    count(work);
-    if (record_) work_.triangles.push_back(work);
   }
 
-  void rasterize(const Piece& piece, TriangleWork& work) {
-    work.tile_count += raster::tiles_touched(piece.setup);
-    fragments_.begin(piece.setup, piece.corners);
-    for (int y = piece.setup.top & ~1; y < piece.setup.bottom; y += raster::kWindow) {
-      const raster::BandCounts counts = raster::rasterize_band(piece.setup, depth_, y, windows_);
+  template <typename Take>
+  void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Take take) {
+    if (!setup.covers) return;
+    work.tile_count += raster::tiles_touched(setup);
+    for (int y = setup.top & ~1; y < setup.bottom; y += raster::kWindow) {
+      const raster::BandCounts counts = raster::rasterize_band(setup, depth_, y, windows_);
       counters_.fragments += counts.covered;
       counters_.fragments_passed += counts.passed;
       work.quad_count += counts.quads;
-      if (record_ || state_.color_write) pass_quads(std::span(windows_).first(counts.windows));
+      if (record_ ? counts.windows != 0 : state_.color_write && counts.passed != 0)
+        take(piece, std::span<const raster::Window>(windows_).first(counts.windows));
     }
-    fragments_.end();
-  }
-
-  // The quads of a band in their order, which is that of rows: through all windows first.
-  void pass_quads(std::span<const raster::Window> windows) {
-    for (unsigned row = 0; row < raster::kWindow / 2; ++row) {
-      for (const raster::Window& window : windows) {
-        auto left = static_cast<unsigned>((record_ ? window.covered : window.passed) >> 16 * row & 0xffffu);
-        while (left != 0) {
-          const unsigned column = static_cast<unsigned>(std::countr_zero(left)) / 4;
-          left &= ~(0xfu << 4 * column);
-          pass_quad(window, row, column);
-        }
-      }
-    }
-  }
-
-  void pass_quad(const raster::Window& window, unsigned row, unsigned column) {
-    const unsigned bit = 16 * row + 4 * column;
-    const int x = window.x + static_cast<int>(2 * column), y = window.y + static_cast<int>(2 * row);
-    const auto passed = static_cast<unsigned>(window.passed >> bit & 0xfu);
-    if (record_) {
-      work_.quads.push_back({static_cast<std::uint16_t>(x / 2), static_cast<std::uint16_t>(y / 2),
-                             static_cast<std::uint8_t>(window.covered >> bit & 0xfu),
-                             static_cast<std::uint8_t>(passed), 0});
-    }
-    if (passed != 0 && state_.color_write) fragments_.push_quad(x, y, passed);
   }
 
   void count(const TriangleWork& work) {
@@ -129,47 +218,74 @@ class RasterStage {
     counters_.triangles_clipped += work.pieces > 1;
   }
 
+  void append(const Batch& batch) {
+    const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+    behind(work_.shaded_vertices, batch.geometry.shaded_vertices);
+    behind(work_.triangles, batch.work.triangles);
+    behind(work_.quads, batch.work.quads);
+    behind(work_.texel_blocks, batch.work.texel_blocks);
+  }
+
   const DrawState& state_;
   bool record_;
   DrawWork& work_;
   RenderCounters& counters_;
-  FragmentPipe fragments_;
   raster::DepthTarget depth_;
   std::array<raster::Window, raster::kMaxWindows> windows_;
+  std::atomic<int> waiting_ = 0;  // batches whose depth is tested when they are written
 };
+
+std::size_t thread_count() {
+  using tbb::global_control;
+  const auto arena = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  return std::min(arena, global_control::active_value(global_control::max_allowed_parallelism));
+}
+
+void run_on_one_thread(Indices& indices, Batch& batch, DrawStages& stages) {
+  while (indices.fill(batch.geometry)) {
+    batch.geometry.process();
+    stages.test_shade_and_write(batch);
+  }
+}
+
+// Several batches at once, each in one stage.
+void run_on_many_threads(Indices& indices, std::array<std::unique_ptr<Batch>, kBatchesInFlight>& batches,
+                         DrawStages& stages) {
+  using tbb::filter_mode;
+  std::size_t next = 0;
+  const auto fill = [&](tbb::flow_control& control) -> Batch* {
+    Batch* batch = batches[next++ % kBatchesInFlight].get();
+    if (indices.fill(batch->geometry)) return batch;
+    control.stop();
+    return nullptr;
+  };
+  const auto stage = [](filter_mode mode, auto run) {
+    return tbb::make_filter<Batch*, Batch*>(mode, [run](Batch* batch) {
+      run(*batch);
+      return batch;
+    });
+  };
+  tbb::parallel_pipeline(
+      kBatchesInFlight,
+      tbb::make_filter<void, Batch*>(filter_mode::serial_in_order, fill) &
+          stage(filter_mode::parallel, [](Batch& batch) { batch.geometry.process(); }) &
+          stage(filter_mode::serial_in_order, [&](Batch& batch) { stages.test_depth(batch); }) &
+          stage(filter_mode::parallel, [](Batch& batch) { DrawStages::shade(batch); }) &
+          tbb::make_filter<Batch*, void>(filter_mode::serial_in_order,
+                                         [&](Batch* batch) { stages.write(*batch); }));
+}
 
 }  // namespace
 
-// Geometry of several batches at once, rasterised one after the other: the same bits from any number of
-// threads.
-void render_draw(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
-                 RenderCounters& counters) {
-  Indices indices(bindings, options.vertex_cache_entries);
-  RasterStage raster_stage(bindings, options, frame, work, counters);
-  const auto make_batch = [&] {
-    return std::make_unique<GeometryBatch>(bindings, options, primitive::Viewport{frame.width, frame.height});
-  };
-  std::array<std::unique_ptr<GeometryBatch>, kBatchesInFlight> batches;
-  std::size_t next = 0;
-  using tbb::filter_mode;
-  tbb::parallel_pipeline(
-      kBatchesInFlight,
-      tbb::make_filter<void, GeometryBatch*>(filter_mode::serial_in_order,
-                                             [&](tbb::flow_control& control) -> GeometryBatch* {
-                                               auto& batch = batches[next++ % kBatchesInFlight];
-                                               if (!batch) batch = make_batch();
-                                               if (indices.fill(*batch)) return batch.get();
-                                               control.stop();
-                                               return nullptr;
-                                             }) &
-          tbb::make_filter<GeometryBatch*, GeometryBatch*>(filter_mode::parallel,
-                                                           [](GeometryBatch* batch) {
-                                                             batch->process();
-                                                             return batch;
-                                                           }) &
-          tbb::make_filter<GeometryBatch*, void>(filter_mode::serial_in_order,
-                                                 [&](GeometryBatch* batch) { raster_stage.draw(*batch); }));
-  raster_stage.finish();
+void render_draw(const DrawBindings& bindings, const RenderOptions& options, Indices& indices, Frame& frame,
+                 DrawWork& work, RenderCounters& counters) {
+  indices.begin(bindings);
+  DrawStages stages(bindings, options, frame, work, counters);
+  const bool many = thread_count() > 1;
+  std::array<std::unique_ptr<Batch>, kBatchesInFlight> batches;
+  for (auto& batch : std::span(batches).first(many ? kBatchesInFlight : 1))
+    batch = std::make_unique<Batch>(bindings, options, frame);
+  many ? run_on_many_threads(indices, batches, stages) : run_on_one_thread(indices, *batches[0], stages);
 }
 
 }  // namespace splatscope

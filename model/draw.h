@@ -23,8 +23,11 @@ struct DrawBindings {
   std::span<const primitive::UsedAttribute> attributes;  // that the pixel program reads
 };
 
-// Runs one draw on `frame`, adds what it did to `work` (where wanted) and to `counters`.
-void render_draw(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
-                 RenderCounters& counters);
+class Indices;  // geometry.h
+
+// Runs one draw on `frame`, adds what it did to `work` (where wanted) and to `counters`. `indices` serves one
+// draw after the other. The same bits from any number of threads.
+void render_draw(const DrawBindings& bindings, const RenderOptions& options, Indices& indices, Frame& frame,
+                 DrawWork& work, RenderCounters& counters);
 
 }  // namespace splatscope

@@ -1,6 +1,8 @@
 #include "model/fragment_pipe.h"
 
 #include <algorithm>
+#include <bit>
+#include <utility>
 
 #include "model/output/output.h"
 #include "model/texture/sample.h"
@@ -8,38 +10,79 @@
 namespace splatscope {
 namespace {
 
-constexpr std::size_t kCapacity = raster::FragmentPlaces::kCapacity;
-static_assert(kCapacity == pixel::kBatch);
+static_assert(FragmentPipe::kCapacity == pixel::kBatch);
+static_assert(raster::FragmentPlaces::kStride == pixel::kLaneStride);
+
+constexpr unsigned kQuadRows = raster::kWindow / 2;
+
+std::uint32_t row_of(std::uint64_t pixels, unsigned row) {
+  return static_cast<std::uint32_t>(pixels >> 16 * row & 0xffffu);
+}
 
 }  // namespace
 
-FragmentPipe::FragmentPipe(const DrawBindings& bindings, Frame& frame, DrawWork* work)
+FragmentPipe::FragmentPipe(const DrawBindings& bindings, const Frame& frame, DrawWork* work, Write write)
     : bindings_(bindings),
-      frame_(frame),
+      width_(frame.width),
+      formats_(frame.formats),
       work_(work),
+      write_(std::move(write)),
       samples_(bindings.texture != nullptr && bindings.pixel != nullptr &&
-               (bindings.pixel->texture_stages() & 1u) != 0) {}
+               (bindings.pixel->texture_stages() & 1u) != 0) {
+  attributes_[primitive::kDiffuse] = &batch_.v0;
+  attributes_[primitive::kSpecular] = &batch_.v1;
+  for (std::size_t stage = 0; primitive::kTexcoord0 + stage < primitive::kAttributes; ++stage)
+    attributes_[primitive::kTexcoord0 + stage] = &batch_.t[stage];
+  if (samples_) attributes_[primitive::kTexcoord0] = &coordinates_;
+}
 
-void FragmentPipe::begin(const raster::TriangleSetup& setup,
+void FragmentPipe::begin(std::size_t piece, const raster::TriangleSetup& setup,
                          const std::array<const raster::Attributes*, 3>& corners) {
+  interpolate();
+  piece_ = piece;
   setup_ = &setup;
   corners_ = corners;
 }
 
-void FragmentPipe::push_quad(int x, int y, unsigned passed) {
-  if (count_ + 4 > kCapacity) flush();
-  const auto left = static_cast<float>(x - setup_->left), top = static_cast<float>(y - setup_->top);
-  const std::uint32_t first = static_cast<std::uint32_t>(y) * frame_.width + static_cast<std::uint32_t>(x);
-  for (unsigned bit = 0; bit < 4; ++bit) {  // all are stored, and stay where they passed
-    places_.x[count_] = left + static_cast<float>(bit & 1u);
-    places_.y[count_] = top + static_cast<float>(bit >> 1);
-    pixels_[count_] = first + (bit & 1u) + (bit >> 1) * frame_.width;
-    if (work_ != nullptr) quads_[count_] = static_cast<std::uint32_t>(work_->quads.size()) - 1;
-    count_ += passed >> bit & 1u;
+void FragmentPipe::push_band(std::span<const raster::Window> windows) {
+  std::size_t passed = 0;
+  for (const raster::Window& window : windows)
+    passed += static_cast<std::size_t>(std::popcount(window.passed));
+  if (work_ == nullptr && passed <= kCapacity) {  // nearly every band
+    if (count_ + passed > kCapacity) flush();
+    return push_rows(windows, 0, kQuadRows);
+  }
+  for (unsigned row = 0; row < kQuadRows; ++row) {
+    for (const raster::Window& window : windows) {
+      if (row_of(window.covered, row) == 0) continue;
+      if (count_ + static_cast<std::size_t>(std::popcount(row_of(window.passed, row))) > kCapacity) flush();
+      if (work_ != nullptr) note_quads(window, row);
+      if (bindings_.draw.state.color_write) push_rows({&window, 1}, row, row + 1);
+    }
   }
 }
 
-void FragmentPipe::end() {
+void FragmentPipe::push_rows(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row) {
+  count_ = raster::append_places(*setup_, windows, first_row, end_row, width_, count_, places_);
+}
+
+// The quads of one row of a window, and which of them each fragment that comes next is of.
+void FragmentPipe::note_quads(const raster::Window& window, unsigned row) {
+  std::size_t fragment = count_;
+  for (unsigned column = 0; column < kQuadRows; ++column) {
+    const auto covered = static_cast<std::uint8_t>(row_of(window.covered, row) >> 4 * column & 0xfu);
+    if (covered == 0) continue;
+    const auto passed = static_cast<std::uint8_t>(row_of(window.passed, row) >> 4 * column & 0xfu);
+    for (int i = 0; i < std::popcount(passed); ++i)
+      quads_[fragment++] = static_cast<std::uint32_t>(work_->quads.size());
+    work_->quads.push_back({static_cast<std::uint16_t>(window.x / 2 + static_cast<int>(column)),
+                            static_cast<std::uint16_t>(window.y / 2 + static_cast<int>(row)), covered, passed,
+                            0});
+  }
+}
+
+// What waits of the last piece.
+void FragmentPipe::interpolate() {
   if (interpolated_ == count_) return;
   raster::interpolate(*setup_, corners_, bindings_.attributes, places_, interpolated_, count_, attributes_);
   interpolated_ = count_;
@@ -56,39 +99,34 @@ void FragmentPipe::note_blocks(std::span<const std::uint32_t> blocks) {
   }
 }
 
+// D3DFMT_A8 has no colour: the other components of t0 stay 0.
 void FragmentPipe::sample(std::size_t count) {
   std::array<std::uint32_t, kCapacity> blocks;
-  const auto& coordinates = attributes_.values[primitive::kTexcoord0];
-  for (std::size_t c = 0; c < 3; ++c) std::fill_n(batch_.t[0][c], count, 0.0f);  // D3DFMT_A8 has no colour
   const auto noted = std::span(blocks).first(work_ != nullptr ? count : 0);
-  texture::sample_nearest(*bindings_.texture, coordinates[0], coordinates[1], {batch_.t[0][3], count}, noted);
-  if (const int bits = frame_.formats.filter_bits; bits > 0) {
-    texture::sample_bilinear(*bindings_.texture, bits, coordinates[0], coordinates[1],
-                             {batch_.t[0][3], count});
-  }
+  const std::span<float> alpha(batch_.t[0][3], count);
+  texture::sample_nearest(*bindings_.texture, coordinates_[0], coordinates_[1], alpha, noted);
+  if (formats_.filter_bits > 0)
+    texture::sample_bilinear(*bindings_.texture, formats_.filter_bits, coordinates_[0], coordinates_[1],
+                             alpha);
   note_blocks(noted);
 }
 
+void FragmentPipe::flush_all() {
+  flush();
+  piece_ = kNone;
+}
+
 void FragmentPipe::flush() {
-  end();
+  interpolate();
   if (count_ == 0) return;
-  for (const primitive::UsedAttribute& used : bindings_.attributes) {
-    auto& values = attributes_.values[used.attribute];
-    const bool color = used.attribute <= primitive::kSpecular;
-    if (used.attribute == primitive::kTexcoord0 && samples_) continue;
-    auto& to = used.attribute == primitive::kDiffuse    ? batch_.v0
-               : used.attribute == primitive::kSpecular ? batch_.v1
-                                                        : batch_.t[used.attribute - primitive::kTexcoord0];
-    for (std::size_t c = 0; c < 4; ++c) {
-      if (color) output::receive_colors(values[c], count_, frame_.formats.color);
-      std::copy_n(values[c], kCapacity, to[c]);
-    }
-  }
+  for (const primitive::UsedAttribute& used : bindings_.attributes)
+    if (used.attribute <= primitive::kSpecular)
+      for (float* values : *attributes_[static_cast<std::size_t>(used.attribute)])
+        output::receive_colors(values, count_, formats_.color);
   if (samples_) sample(count_);
   if (bindings_.pixel != nullptr) bindings_.pixel->run({}, batch_, static_cast<int>(count_));
   const auto& color = bindings_.pixel != nullptr ? batch_.r0 : batch_.v0;
-  output::write_colors({color[0], color[1], color[2], color[3]}, std::span(pixels_).first(count_),
-                       bindings_.draw.state, frame_);
+  write_({color[0], color[1], color[2], color[3]}, {places_.pixel, count_});
   count_ = interpolated_ = 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "model/draw.h"
@@ -9,41 +10,53 @@
 
 namespace splatscope {
 
-// Fragments on their way through the pixel unit, in order; full batches are shaded and written.
+// Fragments on their way through the pixel unit, in order; full batches are shaded and given away.
 class FragmentPipe {
  public:
-  // `work`: where the texel blocks that each quad reads are noted, in the quad and in `texel_blocks`; or
-  // null.
-  FragmentPipe(const DrawBindings& bindings, Frame& frame, DrawWork* work);
+  static constexpr std::size_t kCapacity = raster::FragmentPlaces::kCapacity;
+  using Colors = std::array<const float*, 4>;  // r, g, b, a: an array each
+  using Write = std::function<void(const Colors&, std::span<const std::uint32_t> pixels)>;
 
-  // Begins a piece of a triangle, which stays where it is until the next one or the end.
-  void begin(const raster::TriangleSetup& setup, const std::array<const raster::Attributes*, 3>& corners);
+  // `frame`: its size and formats. `work`: where the quads are noted, with the texel blocks that each one
+  // reads; or null. `write` gets at most kCapacity fragments at a time.
+  FragmentPipe(const DrawBindings& bindings, const Frame& frame, DrawWork* work, Write write);
 
-  // The pixels of a quad that passed the depth test: `passed` is not 0. (x, y): first pixel of the quad.
-  // `work` has its record last.
-  void push_quad(int x, int y, unsigned passed);
+  // Begins a piece of a triangle, which stays where it is until the next one begins or all is flushed.
+  void begin(std::size_t piece, const raster::TriangleSetup& setup,
+             const std::array<const raster::Attributes*, 3>& corners);
+  bool began(std::size_t piece) const { return piece_ == piece; }
 
-  // Interpolates what waits of the last piece.
-  void end();
-  // Shades and writes all there is.
-  void flush();
+  // The windows of one band of the piece.
+  void push_band(std::span<const raster::Window> windows);
+
+  // Shades and gives away all there is.
+  void flush_all();
 
  private:
+  static constexpr std::size_t kNone = ~std::size_t{0};
+
+  void interpolate();
+  void flush();
+  void push_rows(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row);
+  void note_quads(const raster::Window& window, unsigned row);
   void sample(std::size_t count);
   void note_blocks(std::span<const std::uint32_t> blocks);
 
   const DrawBindings& bindings_;
-  Frame& frame_;
+  std::uint32_t width_;
+  const NumberFormats& formats_;
   DrawWork* work_;
+  Write write_;
   bool samples_ = false;
+  std::size_t piece_ = kNone;
   const raster::TriangleSetup* setup_ = nullptr;
   std::array<const raster::Attributes*, 3> corners_{};
   std::size_t count_ = 0;         // of fragments in the batch
   std::size_t interpolated_ = 0;  // of these, the first that are
   raster::FragmentPlaces places_;
-  raster::FragmentAttributes attributes_{};
-  std::array<std::uint32_t, raster::FragmentPlaces::kStride> pixels_;
-  std::array<std::uint32_t, raster::FragmentPlaces::kStride> quads_;  // of `work`
+  std::array<std::uint32_t, kCapacity> quads_;        // of `work`, a fragment each
+  alignas(64) raster::FragmentValues coordinates_{};  // of the sampled texture
+  raster::FragmentAttributes attributes_{};           // in `batch_`, or the coordinates
   pixel::FragmentBatch batch_{};
 };
 

@@ -21,9 +21,9 @@ GeometryBatch::GeometryBatch(const DrawBindings& bindings, const RenderOptions& 
       options_(options),
       viewport_(viewport),
       program_(bindings.vertex, bindings.draw.constants),
-      positions_(kVertices),
       attributes_(kVertices) {
   vertex::fill_defaults(program_.input());
+  vertex::fill_defaults(program_.grouped_input());
   std::ranges::copy_if(bindings.draw.attributes, std::back_inserter(inputs_),
                        [&](const VertexAttribute& a) { return bindings.vertex.reads(a.input); });
   for (auto* values : {&projected_.x, &projected_.y, &projected_.z, &projected_.inverse_w})
@@ -51,13 +51,13 @@ void GeometryBatch::shade() {
   const auto& position = out.o[vertex::oPos];
   for (std::size_t first = 0; first < vertices.size(); first += vertex::kBatch) {
     const std::size_t count = std::min<std::size_t>(vertices.size() - first, vertex::kBatch);
-    vertex::fetch(inputs_, bindings_.vertices.bytes, bindings_.draw.vertex_stride,
-                  std::span(vertices).subspan(first, count), program_.input());
-    program_.run(static_cast<int>(count));
+    const unsigned grouped = vertex::fetch_grouped(
+        inputs_, bindings_.vertices.bytes, bindings_.draw.vertex_stride,
+        std::span(vertices).subspan(first, count), program_.input(), program_.grouped_input());
+    program_.run(static_cast<int>(count), grouped);
     primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
                        first);
-    for (std::size_t lane = 0; lane < count; ++lane)
-      for (std::size_t c = 0; c < 4; ++c) positions_[first + lane][c] = position[c][lane];
+    for (std::size_t c = 0; c < 4; ++c) std::copy_n(position[c], count, positions_[c].data() + first);
     for (const primitive::UsedAttribute& used : bindings_.attributes) {
       const auto attribute = static_cast<std::size_t>(used.attribute);
       const auto& values = out.o[vertex::oD0 + used.attribute];   // both orders are D0, D1, T0, T1, ...
@@ -91,7 +91,7 @@ void GeometryBatch::assemble(BatchTriangle& triangle) {
 void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
   primitive::ClipTriangle corners;
   for (std::size_t corner = 0; corner < kCorners; ++corner)
-    corners[corner] = {positions_[triangle.vertices[corner]], attributes_[triangle.vertices[corner]]};
+    corners[corner] = {position_of(triangle.vertices[corner]), attributes_[triangle.vertices[corner]]};
   const primitive::Assembled assembled =
       primitive::assemble(corners, viewport_, bindings_.attributes, clipped_);
   triangle.outcome = assembled.outcome;
@@ -122,18 +122,31 @@ void GeometryBatch::set_up() {
   waiting_ = 0;
 }
 
-Indices::Indices(const DrawBindings& bindings, int cache_entries)
-    : bindings_(bindings), cache_entries_(static_cast<std::uint32_t>(cache_entries)), known_(kIndices) {}
+std::int64_t GeometryBatch::pixels_at_most() const {
+  std::int64_t pixels = 0;
+  for (const raster::TriangleSetup& setup : std::span(setups_).first(piece_corners_.size()))
+    if (setup.covers) pixels += std::int64_t{setup.right - setup.left} * (setup.bottom - setup.top);
+  return pixels;
+}
+
+Indices::Indices(int cache_entries)
+    : cache_entries_(static_cast<std::uint64_t>(cache_entries)), known_(kIndices) {}
+
+void Indices::begin(const DrawBindings& bindings) {
+  bindings_ = &bindings;
+  position_ = 0;
+  shaded_ += cache_entries_ + 1;  // nothing is left in the FIFO
+}
 
 std::uint32_t Indices::index_at(std::uint32_t position) const {
   std::uint16_t index;
-  std::memcpy(&index, bindings_.indices.bytes.data() + std::size_t{position} * sizeof index, sizeof index);
+  std::memcpy(&index, bindings_->indices.bytes.data() + std::size_t{position} * sizeof index, sizeof index);
   return index;
 }
 
 std::uint16_t Indices::place_of(std::uint32_t index, GeometryBatch& batch, std::uint8_t& new_vertices) {
   Known& known = known_[index];
-  const std::uint32_t number = bindings_.draw.base_vertex + index;
+  const std::uint32_t number = bindings_->draw.base_vertex + index;
   if (known.inserted == 0 || shaded_ - (known.inserted - 1) > cache_entries_) {
     batch.shaded_vertices.push_back(number);
     known.inserted = ++shaded_;
@@ -150,15 +163,19 @@ std::uint16_t Indices::place_of(std::uint32_t index, GeometryBatch& batch, std::
 bool Indices::fill(GeometryBatch& batch) {
   batch.clear();
   ++batch_;
-  const Draw& draw = bindings_.draw;
-  while (position_ + kCorners <= draw.index_count &&
-         batch.vertices.size() + kCorners <= GeometryBatch::kVertices) {
-    BatchTriangle& triangle = batch.triangles.emplace_back();
+  const Draw& draw = bindings_->draw;
+  for (; position_ + kCorners <= draw.index_count; position_ += kCorners) {
+    std::array<std::uint32_t, kCorners> corners;
+    std::size_t size = batch.vertices.size();  // with this triangle, at most
     for (std::uint32_t corner = 0; corner < kCorners; ++corner) {
-      triangle.vertices[corner] =
-          place_of(index_at(draw.first_index + position_ + corner), batch, triangle.new_vertices);
+      corners[corner] = index_at(draw.first_index + position_ + corner);
+      size += known_[corners[corner]].batch != batch_;
     }
-    position_ += kCorners;
+    // Exactly full, a batch of whole quads ends with one.
+    if (size > GeometryBatch::kVertices) break;
+    BatchTriangle& triangle = batch.triangles.emplace_back();
+    for (std::uint32_t corner = 0; corner < kCorners; ++corner)
+      triangle.vertices[corner] = place_of(corners[corner], batch, triangle.new_vertices);
   }
   return !batch.triangles.empty();
 }

@@ -45,11 +45,16 @@ class GeometryBatch {
 
   // The pieces of all triangles, in order.
   Piece piece(std::size_t i) const { return {setups_[i], piece_corners_[i]}; }
+  // Of the rectangles of all pieces together.
+  std::int64_t pixels_at_most() const;
 
  private:
   void shade();
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);
+  Vec4 position_of(std::size_t vertex) const {
+    return {positions_[0][vertex], positions_[1][vertex], positions_[2][vertex], positions_[3][vertex]};
+  }
   void add_piece(const std::array<const raster::Attributes*, 3>& corners);
   void set_up();
 
@@ -58,7 +63,7 @@ class GeometryBatch {
   primitive::Viewport viewport_;
   std::vector<VertexAttribute> inputs_;  // that the program reads
   vertex::VertexProgram::Bound program_;
-  std::vector<Vec4> positions_;
+  std::array<std::array<float, kVertices>, 4> positions_;  // x y z w
   std::vector<raster::Attributes> attributes_;
   primitive::ProjectedVertices projected_;
   std::array<primitive::WindowTriangle, primitive::kMaxPieces> clipped_;
@@ -69,28 +74,30 @@ class GeometryBatch {
   std::vector<std::array<const raster::Attributes*, 3>> piece_corners_;
 };
 
-// Walks the indices of a draw with the post-transform FIFO, batch by batch.
+// Walks the indices of a draw with the post-transform FIFO, batch by batch; one draw after the other.
 class Indices {
  public:
-  Indices(const DrawBindings& bindings, int cache_entries);
+  explicit Indices(int cache_entries);
+  // Begins a draw, with the FIFO empty.
+  void begin(const DrawBindings& bindings);
   // False: no triangle is left.
   bool fill(GeometryBatch& batch);
 
  private:
   struct Known {                 // of an index
-    std::uint32_t inserted = 0;  // into the FIFO: 0 never, else 1 + its place in the order of shading
+    std::uint64_t inserted = 0;  // into the FIFO: 0 never, else 1 + its place in the order of shading
     std::uint32_t batch = 0;     // the last one it was in
     std::uint16_t place = 0;     // there
   };
   std::uint32_t index_at(std::uint32_t position) const;
   std::uint16_t place_of(std::uint32_t index, GeometryBatch& batch, std::uint8_t& new_vertices);
 
-  const DrawBindings& bindings_;
-  std::uint32_t cache_entries_;
+  const DrawBindings* bindings_ = nullptr;
+  std::uint64_t cache_entries_;
   std::vector<Known> known_;
   std::uint32_t position_ = 0;  // in the draw
-  std::uint32_t batch_ = 0;
-  std::uint32_t shaded_ = 0;
+  std::uint32_t batch_ = 0;     // of all draws, as is
+  std::uint64_t shaded_ = 0;
 };
 
 }  // namespace splatscope

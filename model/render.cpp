@@ -7,6 +7,7 @@
 
 #include "model/draw.h"
 #include "model/error.h"
+#include "model/geometry.h"
 #include "model/isa/program.h"
 #include "model/output/output.h"
 
@@ -90,7 +91,8 @@ class Renderer {
         commands_(commands),
         options_(options),
         rendered_(rendered),
-        programs_(trace, options.formats) {
+        programs_(trace, options.formats),
+        indices_(options.vertex_cache_entries) {
     output::clear(Clear{}, rendered.frame);
   }
 
@@ -104,18 +106,23 @@ class Renderer {
   void run(std::size_t, const Present&) {}
   void run(std::size_t command, const Draw& draw) {
     const LoadedPixelProgram* pixel = draw.pixel_program ? &programs_.pixel(*draw.pixel_program) : nullptr;
-    const DrawBindings bindings{
-        draw,
-        trace_.buffers[draw.vertex_buffer],
-        trace_.buffers[draw.index_buffer],
-        draw.texture ? &trace_.textures[*draw.texture] : nullptr,
-        programs_.vertex(draw.vertex_program),
-        pixel ? &pixel->program : nullptr,
-        pixel ? std::span<const primitive::UsedAttribute>(pixel->attributes) : kDiffuseOnly};
+    const DrawBindings bindings{draw,
+                                trace_.buffers[draw.vertex_buffer],
+                                trace_.buffers[draw.index_buffer],
+                                draw.texture ? &trace_.textures[*draw.texture] : nullptr,
+                                programs_.vertex(draw.vertex_program),
+                                pixel ? &pixel->program : nullptr,
+                                attributes_read(draw, pixel)};
     DrawWork work;
     work.command = static_cast<std::uint32_t>(command);
-    render_draw(bindings, options_, rendered_.frame, work, rendered_.counters);
+    render_draw(bindings, options_, indices_, rendered_.frame, work, rendered_.counters);
     if (options_.record_work) rendered_.work.push_back(std::move(work));
+  }
+
+  static std::span<const primitive::UsedAttribute> attributes_read(const Draw& draw,
+                                                                   const LoadedPixelProgram* pixel) {
+    if (!draw.state.color_write) return {};
+    return pixel ? std::span<const primitive::UsedAttribute>(pixel->attributes) : kDiffuseOnly;
   }
 
   const Trace& trace_;
@@ -123,6 +130,7 @@ class Renderer {
   const RenderOptions& options_;
   Rendered& rendered_;
   Programs programs_;
+  Indices indices_;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <random>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace splatscope {
 namespace {
@@ -132,25 +133,46 @@ TEST(Render, ShadesWhatMissesTheVertexCache) {
   }
 }
 
-// Enough triangles for several batches in flight, on top of one another.
+// Enough triangles for several batches in flight, on top of one another, with the depth test: small ones,
+// whose fragments wait for their turn, and between them so large ones that theirs do not.
 TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> anywhere(-1, 1);
-  static std::array<float, 4 * 6000> corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = i % 4 == 3 ? 1 : anywhere(random);
+  constexpr std::size_t kCorner = 4, kTriangle = 3 * kCorner, kTriangles = 6000;
+  static std::array<float, kTriangle * kTriangles> corners;
+  for (std::size_t triangle = 0; triangle < kTriangles; ++triangle) {
+    const float size = triangle / 700 % 3 == 1 ? 1.0f : 0.05f;
+    const float x = anywhere(random), y = anywhere(random);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::array<float, kCorner> position{x + size * anywhere(random), y + size * anywhere(random),
+                                                std::abs(anywhere(random)), 1};
+      std::ranges::copy(position, corners.begin() + kTriangle * triangle + kCorner * corner);
+    }
+  }
   Trace trace = white_triangles(corners, CullMode::none);
+  trace.width = trace.height = 200;
   trace.programs[0].text = "vs_1_1\nmov oPos, v0\nmov oD0, v0\n";
-  std::get<Draw>(trace.commands[0]).state.depth_test = false;  // the last one stays
-  const auto on_threads = [&](std::size_t threads) {
+  const auto on_threads = [&](std::size_t threads, bool record) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    return render(trace, RenderOptions{});
+    RenderOptions options;
+    options.record_work = record;
+    return render(trace, options);
   };
-  const Rendered one = on_threads(1);
-  for (const std::size_t threads : {2u, 4u}) {
-    const Rendered many = on_threads(threads);
+  const auto quads_of = [](const Rendered& rendered) {
+    std::vector<std::array<unsigned, 4>> quads;
+    for (const QuadWork& quad : rendered.work[0].quads)
+      quads.push_back({quad.x, quad.y, quad.covered, quad.passed});
+    return quads;
+  };
+  const Rendered one = on_threads(1, true);
+  for (const std::size_t threads : {1u, 2u, 4u}) {
+    const Rendered many = on_threads(threads, true), frame_alone = on_threads(threads, false);
     EXPECT_EQ(one.frame, many.frame);
+    EXPECT_EQ(one.frame, frame_alone.frame);
     EXPECT_EQ(one.work[0].shaded_vertices, many.work[0].shaded_vertices);
+    EXPECT_EQ(quads_of(one), quads_of(many));
     EXPECT_EQ(one.counters.fragments_passed, many.counters.fragments_passed);
+    EXPECT_EQ(one.counters.fragments_passed, frame_alone.counters.fragments_passed);
   }
 }
 

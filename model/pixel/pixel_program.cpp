@@ -50,20 +50,16 @@ ResultFormat result_format(isa::Version version, CombinerFormat format) {
   return {-range, range, format == CombinerFormat::signed9};
 }
 
-// Destination modifiers, then the range and the steps of the register.
-void commit(const isa::Instruction& instruction, ResultFormat format, const Register& result,
-            Registers& registers, int count) {
-  const isa::Destination& destination = instruction.destination;
-  Register& to = register_of(registers, destination.file, destination.index);
-  const float scale = destination.shift >= 0 ? static_cast<float>(1 << destination.shift)
-                                             : 1.0f / static_cast<float>(1 << -destination.shift);
-  const float low = destination.saturate ? 0.0f : format.low;
-  const float high = destination.saturate ? 1.0f : format.high;
-  for (std::size_t component = 0; component < 4; ++component) {
-    if (!(destination.mask & (1u << component))) continue;
-    commit_lanes(result.component[component], scale, {low, high, format.steps}, to.component[component],
-                 count);
-  }
+float scale_of(const isa::Destination& destination) {
+  return destination.shift >= 0 ? static_cast<float>(1 << destination.shift)
+                                : 1.0f / static_cast<float>(1 << -destination.shift);
+}
+
+bool reads(const isa::Instruction& instruction, const isa::Destination& destination) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
+    if (instruction.sources[i].file == destination.file && instruction.sources[i].index == destination.index)
+      return true;
+  return false;
 }
 
 bool is_texture(isa::Version version, isa::Opcode opcode) {
@@ -106,7 +102,8 @@ struct PixelProgram::Decoded {
   struct Step {
     isa::Instruction instruction;
     bool texture;
-    std::size_t place;  // in the program
+    std::size_t place;      // in the program
+    bool in_place = false;  // neither it nor what is issued with it reads a register that they write
   };
   std::vector<Step> steps;
   std::array<std::optional<Vec4>, isa::kPixelConstants> defined;
@@ -118,7 +115,10 @@ struct PixelProgram::Decoded {
   std::size_t instructions = 0;
 
   void append(const isa::Instruction& instruction, std::size_t place);
+  void decide_in_place(std::size_t issued);  // of the last steps, which are issued together
   std::size_t execute(std::size_t at, Registers& registers, const Context& context) const;
+  void run(std::span<const Vec4> values, FragmentBatch& batch, int count, const Sampler& sampler,
+           const BumpStages& bump, bool sampled_ahead) const;
   void use(isa::RegisterFile file, std::size_t index);
   void prepare(std::span<const Vec4> values, const FragmentBatch& batch, int count,
                Registers& registers) const;
@@ -146,6 +146,7 @@ void PixelProgram::Decoded::append(const isa::Instruction& instruction, std::siz
   using enum isa::Opcode;
   const bool texture = is_texture(version, instruction.opcode);
   steps.push_back({instruction, texture, place});
+  if (!texture) decide_in_place(instruction.coissue ? 2 : 1);
   use(instruction.destination.file, instruction.destination.index);
   for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
     use(instruction.sources[i].file, instruction.sources[i].index);
@@ -159,6 +160,15 @@ void PixelProgram::Decoded::append(const isa::Instruction& instruction, std::siz
   const isa::Source own{isa::RegisterFile::texture, instruction.destination.index};
   samples_ahead &= instruction.opcode == tex || instruction.opcode == texcoord ||
                    (instruction.opcode == texld && instruction.sources[0] == own);
+}
+
+void PixelProgram::Decoded::decide_in_place(std::size_t issued) {
+  const auto last = std::span(steps).last(issued);
+  const bool conflict = std::ranges::any_of(last, [&](const Step& reader) {
+    return std::ranges::any_of(
+        last, [&](const Step& writer) { return reads(reader.instruction, writer.instruction.destination); });
+  });
+  for (Step& step : last) step.in_place = !conflict;
 }
 
 void PixelProgram::Decoded::prepare(std::span<const Vec4> values, const FragmentBatch& batch, int count,
@@ -217,14 +227,15 @@ void PixelProgram::run(std::span<const Vec4> constants, FragmentBatch& batch, in
     for (std::size_t component = 0; component < 4; ++component)
       std::copy_n(batch.t[stage][component], lanes, texel[component]);
   };
-  run(constants, batch, count, sampled_ahead);
+  decoded_->run(constants, batch, count, sampled_ahead, {}, true);
 }
 
 // One instruction or co-issued pair; returns the step after it.
 std::size_t PixelProgram::Decoded::execute(std::size_t at, Registers& registers,
                                            const Context& context) const {
   if (steps[at].texture) {
-    run_texture_instruction(steps[at].instruction, registers, context);
+    const bool sampled = context.sampled_ahead && steps[at].instruction.opcode == isa::Opcode::tex;
+    if (!sampled) run_texture_instruction(steps[at].instruction, registers, context);
     return at + 1;
   }
   // Both halves of a pair read before either writes.
@@ -237,22 +248,41 @@ std::size_t PixelProgram::Decoded::execute(std::size_t at, Registers& registers,
       sources[i] = read(instruction.sources[i], registers, copies[i], context.count);
     const isa::Destination& destination = instruction.destination;
     const bool select_by_alpha = version.minor < 4;  // cnd
-    compute_lanes({instruction.opcode, destination.mask, select_by_alpha, sources,
-                   context.bump[destination.index].matrix},
-                  context.count, results[k]);
+    const float low = destination.saturate ? 0.0f : format.low,
+                high = destination.saturate ? 1.0f : format.high;
+    const Operation operation{instruction.opcode,
+                              destination.mask,
+                              select_by_alpha,
+                              sources,
+                              context.bump[destination.index].matrix,
+                              scale_of(destination),
+                              {low, high, format.steps}};
+    Register& to = register_of(registers, destination.file, destination.index);
+    compute_lanes(operation, context.count, steps[at + k].in_place ? to : results[k]);
   }
-  for (std::size_t k = 0; k < issued; ++k)
-    commit(steps[at + k].instruction, format, results[k], registers, context.count);
+  for (std::size_t k = 0; k < issued; ++k) {
+    if (steps[at + k].in_place) continue;
+    const isa::Destination& destination = steps[at + k].instruction.destination;
+    Register& to = register_of(registers, destination.file, destination.index);
+    for (std::size_t component = 0; component < 4; ++component)
+      if (destination.mask & (1u << component))
+        std::copy_n(results[k].component[component], context.count, to.component[component]);
+  }
   return at + issued;
 }
 
 void PixelProgram::run(std::span<const Vec4> constants, FragmentBatch& batch, int count,
                        const Sampler& sampler, const BumpStages& bump) const {
+  decoded_->run(constants, batch, count, sampler, bump, false);
+}
+
+void PixelProgram::Decoded::run(std::span<const Vec4> values, FragmentBatch& batch, int count,
+                                const Sampler& sampler, const BumpStages& bump, bool sampled_ahead) const {
   Registers registers;
-  decoded_->prepare(constants, batch, count, registers);
+  prepare(values, batch, count, registers);
   batch.killed = 0;
-  const Context context{decoded_->version, batch, count, sampler, bump};
-  for (std::size_t at = 0; at < decoded_->steps.size();) at = decoded_->execute(at, registers, context);
+  const Context context{version, batch, count, sampler, bump, sampled_ahead};
+  for (std::size_t at = 0; at < steps.size();) at = execute(at, registers, context);
   for (std::size_t component = 0; component < 4; ++component)
     std::copy_n(registers.temporaries[0].component[component], count, batch.r0[component]);
 }

@@ -16,16 +16,17 @@ namespace splatscope::pixel {
 inline constexpr int kBatch = 64;  // fragments executed together
 inline constexpr int kStages = 6;  // texture stages and coordinate sets: 4 up to ps_1_3
 
-using Lanes = float[kBatch];
+inline constexpr int kLaneStride = kBatch + 16;  // with room behind for a whole SIMD register
+using Lanes = float[kLaneStride];
 
 // Registers of a batch of fragments, structure of arrays: [component r g b a][fragment].
 struct FragmentBatch {
-  alignas(64) float v0[4][kBatch];          // interpolated diffuse, in [0, 1]
-  alignas(64) float v1[4][kBatch];          // interpolated specular
-  alignas(64) float t[kStages][4][kBatch];  // texture coordinates
-  alignas(64) float r0[4][kBatch];          // result
-  alignas(64) float depth[kBatch];          // result of texdepth and texm3x2depth, where writes_depth()
-  std::uint64_t killed = 0;                 // result: bit i where texkill cancelled fragment i
+  alignas(64) Lanes v0[4];          // interpolated diffuse, in [0, 1]
+  alignas(64) Lanes v1[4];          // interpolated specular
+  alignas(64) Lanes t[kStages][4];  // texture coordinates
+  alignas(64) Lanes r0[4];          // result
+  alignas(64) Lanes depth;          // result of texdepth and texm3x2depth, where writes_depth()
+  std::uint64_t killed = 0;         // result: bit i where texkill cancelled fragment i
 };
 
 // Samples the texture of a stage at coordinates u v w (u, v for a 2D one) of fragments 0..count-1.

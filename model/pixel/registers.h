@@ -46,6 +46,7 @@ struct Context {
   int count;
   const Sampler& sampler;
   const BumpStages& bump;
+  bool sampled_ahead = false;  // t# holds the texels already
 };
 
 // Four components to read: of a register itself, or of a copy that a modifier made.
@@ -55,6 +56,12 @@ struct Operand {
 
 Operand read(const isa::Source& source, Registers& registers, Register& copy, int count);
 
+// The range of results, and whether they are rounded to steps of 1/255.
+struct ResultFormat {
+  float low, high;
+  bool steps;
+};
+
 // An arithmetic instruction with its operands found.
 struct Operation {
   isa::Opcode opcode;
@@ -62,19 +69,12 @@ struct Operation {
   bool select_by_alpha;  // cnd looks at alpha alone
   std::array<Operand, 3> sources;
   const float (*bump)[2];  // of bem
+  float scale;             // of the result
+  ResultFormat format;     // of the scaled result
 };
 
-// The result before its modifiers, in the components of the mask.
+// The result as the register holds it, in the components of the mask. `result` is none of the sources.
 void compute_lanes(const Operation& operation, int count, Register& result);
-
-// The range of results, and whether they are rounded to steps of 1/255.
-struct ResultFormat {
-  float low, high;
-  bool steps;
-};
-
-// Results scaled, and as the register holds them.
-void commit_lanes(const float* from, float scale, const ResultFormat& format, float* to, int count);
 
 // One texture address instruction (texture_instructions.cpp).
 void run_texture_instruction(const isa::Instruction& instruction, Registers& registers,

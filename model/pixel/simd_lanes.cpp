@@ -13,12 +13,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::pixel::HWY_NAMESPACE {
 
+// function(component, lane) for the components that are written, as the register holds it.
 template <typename Function>
-HWY_INLINE void each(unsigned mask, Register& result, int count, Function function) {
+HWY_INLINE void each(const Operation& operation, Register& result, int count, Function function) {
+  const float scale = operation.scale, low = operation.format.low, high = operation.format.high;
   for (std::size_t component = 0; component < 4; ++component) {
-    if (!(mask & (1u << component))) continue;
+    if (!(operation.mask & (1u << component))) continue;
     float* HWY_RESTRICT out = result.component[component];
-    for (int i = 0; i < count; ++i) out[i] = function(component, static_cast<std::size_t>(i));
+    for (int i = 0; i < count; ++i)
+      out[i] = in_range(function(component, static_cast<std::size_t>(i)) * scale, low, high);
+    if (operation.format.steps)
+      for (int i = 0; i < count; ++i) out[i] = std::nearbyint(out[i] * 255.0f) / 255.0f;
   }
 }
 
@@ -29,48 +34,40 @@ void compute(const Operation& operation, int count, Register& result) {
   using std::size_t;
   switch (operation.opcode) {
     case isa::Opcode::mov:
-      return each(operation.mask, result, count, [&](size_t k, size_t i) { return a[k][i]; });
+      return each(operation, result, count, [&](size_t k, size_t i) { return a[k][i]; });
     case isa::Opcode::add:
-      return each(operation.mask, result, count, [&](size_t k, size_t i) { return a[k][i] + b[k][i]; });
+      return each(operation, result, count, [&](size_t k, size_t i) { return a[k][i] + b[k][i]; });
     case isa::Opcode::sub:
-      return each(operation.mask, result, count, [&](size_t k, size_t i) { return a[k][i] - b[k][i]; });
+      return each(operation, result, count, [&](size_t k, size_t i) { return a[k][i] - b[k][i]; });
     case isa::Opcode::mul:
-      return each(operation.mask, result, count, [&](size_t k, size_t i) { return a[k][i] * b[k][i]; });
+      return each(operation, result, count, [&](size_t k, size_t i) { return a[k][i] * b[k][i]; });
     case isa::Opcode::mad:
-      return each(operation.mask, result, count,
-                  [&](size_t k, size_t i) { return a[k][i] * b[k][i] + c[k][i]; });
+      return each(operation, result, count, [&](size_t k, size_t i) { return a[k][i] * b[k][i] + c[k][i]; });
     case isa::Opcode::lrp:
-      return each(operation.mask, result, count,
+      return each(operation, result, count,
                   [&](size_t k, size_t i) { return a[k][i] * (b[k][i] - c[k][i]) + c[k][i]; });
     case isa::Opcode::dp3:
-      return each(operation.mask, result, count, [&](size_t, size_t i) {
+      return each(operation, result, count, [&](size_t, size_t i) {
         return a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i];
       });
     case isa::Opcode::dp4:
-      return each(operation.mask, result, count, [&](size_t, size_t i) {
+      return each(operation, result, count, [&](size_t, size_t i) {
         return a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i] + a[3][i] * b[3][i];
       });
     case isa::Opcode::cnd:
-      return each(operation.mask, result, count, [&](size_t k, size_t i) {
+      return each(operation, result, count, [&](size_t k, size_t i) {
         return (operation.select_by_alpha ? a[3][i] : a[k][i]) > 0.5f ? b[k][i] : c[k][i];
       });
     case isa::Opcode::cmp:
-      return each(operation.mask, result, count,
+      return each(operation, result, count,
                   [&](size_t k, size_t i) { return a[k][i] >= 0.0f ? b[k][i] : c[k][i]; });
     case isa::Opcode::bem:
-      return each(operation.mask, result, count, [&](size_t k, size_t i) {
+      return each(operation, result, count, [&](size_t k, size_t i) {
         return a[k][i] + operation.bump[0][k] * b[0][i] + operation.bump[1][k] * b[1][i];
       });
     default:
       throw ModelError("not an arithmetic instruction of pixel programs");
   }
-}
-
-void commit(const float* from, float scale, const ResultFormat& format, float* HWY_RESTRICT to, int count) {
-  const float low = format.low, high = format.high;
-  for (int i = 0; i < count; ++i) to[i] = in_range(from[i] * scale, low, high);
-  if (format.steps)
-    for (int i = 0; i < count; ++i) to[i] = std::nearbyint(to[i] * 255.0f) / 255.0f;
 }
 
 void clamp(const float* from, float low, float high, float* to, int count) {
@@ -87,15 +84,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace splatscope::pixel {
 HWY_EXPORT(compute);
-HWY_EXPORT(commit);
 HWY_EXPORT(clamp);
 HWY_EXPORT(scale);
 
 void compute_lanes(const Operation& operation, int count, Register& result) {
   HWY_DYNAMIC_DISPATCH(compute)(operation, count, result);
-}
-void commit_lanes(const float* from, float factor, const ResultFormat& format, float* to, int count) {
-  HWY_DYNAMIC_DISPATCH(commit)(from, factor, format, to, count);
 }
 void clamp_lanes(const float* from, float low, float high, float* to, int count) {
   HWY_DYNAMIC_DISPATCH(clamp)(from, low, high, to, count);

@@ -77,6 +77,12 @@ struct Window {
   std::uint64_t covered = 0;
   std::uint64_t passed = 0;  // subset of `covered` that passed the depth test
 
+  // Of the pixels of a row of four quads.
+  static constexpr std::size_t kRowLanes = 16;
+  alignas(64) static constexpr std::int32_t kLaneX[kRowLanes] = {0, 1, 0, 1, 2, 3, 2, 3,
+                                                                 4, 5, 4, 5, 6, 7, 6, 7};
+  alignas(64) static constexpr std::int32_t kLaneY[kRowLanes] = {0, 0, 1, 1, 0, 0, 1, 1,
+                                                                 0, 0, 1, 1, 0, 0, 1, 1};
   static constexpr int x_of(unsigned bit) { return static_cast<int>((bit >> 1 & 6) | (bit & 1)); }
   static constexpr int y_of(unsigned bit) { return static_cast<int>((bit >> 3 & 6) | (bit >> 1 & 1)); }
 };

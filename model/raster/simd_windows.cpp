@@ -57,16 +57,12 @@ std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarget& target, 
 
 #else
 
-constexpr std::size_t kRowLanes = 16;  // of a row of four quads
+constexpr std::size_t kRowLanes = Window::kRowLanes;
 using I = hn::CappedTag<std::int32_t, kRowLanes>;
 using U = hn::RebindToUnsigned<I>;
 using F = hn::RebindToFloat<I>;
 using VI = hn::Vec<I>;
 using VF = hn::Vec<F>;
-
-// Pixel of each lane of a row of quads.
-alignas(64) constexpr std::int32_t kLaneX[kRowLanes] = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
-alignas(64) constexpr std::int32_t kLaneY[kRowLanes] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1};
 
 // The pixels of a window inside of all edges.
 HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
@@ -76,17 +72,16 @@ HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
     corner[e] = clamped(edge.origin + std::int64_t{edge.dx} * (x - setup.left) +
                         std::int64_t{edge.dy} * (y - setup.top));
   }
-  const int rows = (std::min(setup.bottom - y, kWindow) + 1) / 2;  // of quads
   std::uint64_t mask = 0;
   for (std::size_t lane = 0; lane < kRowLanes; lane += hn::Lanes(I{})) {
-    const VI lane_x = hn::Load(I{}, kLaneX + lane), lane_y = hn::Load(I{}, kLaneY + lane);
+    const VI lane_x = hn::Load(I{}, Window::kLaneX + lane), lane_y = hn::Load(I{}, Window::kLaneY + lane);
     VI value[3], step[3];
     for (std::size_t e = 0; e < 3; ++e) {
       const VI dx = hn::Set(I{}, setup.edges[e].dx), dy = hn::Set(I{}, setup.edges[e].dy);
       value[e] = hn::Add(hn::Set(I{}, corner[e]), hn::Add(hn::Mul(dx, lane_x), hn::Mul(dy, lane_y)));
       step[e] = hn::Add(dy, dy);
     }
-    for (int row = 0; row < rows; ++row) {
+    for (int row = 0; row < kWindow / 2; ++row) {  // all of them: to leave early costs more, unforeseeably
       const VI outside = hn::Or(hn::Or(value[0], value[1]), value[2]);
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(I{}, hn::Gt(outside, hn::Set(I{}, -1)), bits);
@@ -142,15 +137,17 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
   const VF origin = hn::Set(F{}, setup.depth.origin), dx = hn::Set(F{}, setup.depth.dx),
            dy = hn::Set(F{}, setup.depth.dy);
   std::uint64_t passed = 0;
-  for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(I{})) {
-    const std::uint64_t covered = window.covered >> bit & (~std::uint64_t{0} >> (64 - hn::Lanes(I{})));
-    if (covered == 0) continue;
+  constexpr std::size_t kLanes = hn::MaxLanes(I{});
+  const std::size_t first = hwy::Num0BitsBelowLS1Bit_Nonzero64(window.covered) / kLanes * kLanes;
+  const std::size_t end = 64 - hwy::Num0BitsAboveMS1Bit_Nonzero64(window.covered);
+  for (std::size_t bit = first; bit < end; bit += kLanes) {
+    const std::uint64_t covered = window.covered >> bit & (~std::uint64_t{0} >> (64 - kLanes));
     const std::size_t lane = bit % kRowLanes;
     const int row = static_cast<int>(bit / kRowLanes) * 2;
-    const VF x =
-        hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, kLaneX + lane), hn::Set(I{}, window.x - setup.left)));
-    const VF y =
-        hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, kLaneY + lane), hn::Set(I{}, window.y + row - setup.top)));
+    const VF x = hn::ConvertTo(
+        F{}, hn::Add(hn::Load(I{}, Window::kLaneX + lane), hn::Set(I{}, window.x - setup.left)));
+    const VF y = hn::ConvertTo(
+        F{}, hn::Add(hn::Load(I{}, Window::kLaneY + lane), hn::Set(I{}, window.y + row - setup.top)));
     const VF z = hn::Add(origin, hn::Add(hn::Mul(dx, x), hn::Mul(dy, y)));
     const auto depth = quantize(z, target.format);
     std::uint32_t* upper = stored + static_cast<std::size_t>(row) * stride + lane / 2;
