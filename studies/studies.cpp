@@ -9,6 +9,7 @@
 #include "studies/growth.h"
 #include "studies/hierarchy.h"
 #include "studies/picture_quality.h"
+#include "studies/precision.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
 
@@ -33,6 +34,7 @@ std::span<const Study> own_studies() {
             study_hierarchy},
       Study{"exploration", "shorter programs, and the hardware that Ren 2002, section 9, wishes for",
             study_exploration},
+      Study{"precision", "what each lossy step of the machine costs the picture", study_precision},
       Study{"extremes", "where the formulas of the paper break, and what guards cost", study_extremes},
   };
   return kStudies;
