@@ -125,14 +125,14 @@ Block block_of(const glm::vec3& position, const glm::vec3& normal) {
   return build_ldc_tree({&surfel, 1}, 256).levels.front().blocks.front();
 }
 
-// 90 degrees of view, 100 pixels each way: an eta of 50.
+// 90 degrees of view, 500 pixels each way: an eta of 250.
 BlockFate fate_of(const glm::vec3& position, const glm::vec3& normal, Faces faces = Faces::front) {
   Splatting splatting;
   splatting.cutoff = 1;
   splatting.sigma = 1;
   splatting.depth_offset = 1;
   splatting.faces = faces;
-  const kernels::View view = kernels::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 100, 100, 1, 1000);
+  const kernels::View view = kernels::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 500, 500, 1, 1000);
   return BlockCulling(view, splatting).fate(block_of(position, normal));
 }
 
@@ -143,6 +143,7 @@ TEST(BlockCulling, KnowsWhatFacesAway) {
   // The ray counts, not the camera's direction.
   EXPECT_EQ(BlockFate::facing_away, fate_of({15, 0, 20}, {1, 0, 0}));
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {1, 0, 0})) << "edge-on";
+  EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {0.995f, 0, 0.0998f})) << "may turn on the pixel grid";
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 1.5f}, {0.6f, 0, 0.8f})) << "cut by the near plane";
 }
 
