@@ -8,22 +8,38 @@
 
 namespace splatscope::app {
 
+std::string time_left(double seconds_so_far, double fraction_done) {
+  constexpr double kMost = 100 * 3600;  // beyond it no guess is worth much
+  if (!(seconds_so_far >= 1 && fraction_done > 0)) return {};
+  const double left = seconds_so_far / fraction_done * (1 - std::min(fraction_done, 1.0));
+  if (!(left < kMost)) return {};
+  const int seconds = static_cast<int>(left + 0.5);
+  if (seconds < 3600) return fmt::format("{}:{:02} left", seconds / 60, seconds % 60);
+  return fmt::format("{}:{:02}:{:02} left", seconds / 3600, seconds / 60 % 60, seconds % 60);
+}
+
 ProgressBar::ProgressBar(std::string label, bool quiet)
-    : label_(std::move(label)), active_(!quiet && ::isatty(STDERR_FILENO) != 0) {}
+    : label_(std::move(label)),
+      active_(!quiet && ::isatty(STDERR_FILENO) != 0),
+      start_(std::chrono::steady_clock::now()) {}
 
 void ProgressBar::clear() {
-  if (shown_percent_ >= 0) fmt::print(stderr, "\r\x1b[K");  // erase to the end of the line
-  shown_percent_ = -1;
+  if (!shown_.empty()) fmt::print(stderr, "\r\x1b[K");  // erase to the end of the line
+  shown_.clear();
 }
 
 void ProgressBar::show(double fraction_done) {
-  const int percent = static_cast<int>(100 * std::clamp(fraction_done, 0.0, 1.0));
-  if (percent == 100) return clear();
-  if (!active_ || percent == shown_percent_) return;
-  shown_percent_ = percent;
+  const double done = std::clamp(fraction_done, 0.0, 1.0);
+  if (done == 1) return clear();
+  if (!active_) return;
   constexpr int kWidth = 40;
-  const int full = percent * kWidth / 100;
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3} %", label_, "", full, "", kWidth - full, percent);
+  const int full = static_cast<int>(done * kWidth);
+  const std::chrono::duration<double> so_far = std::chrono::steady_clock::now() - start_;
+  std::string line = fmt::format("\r{} [{:#<{}}{:.<{}}] {:3} %  {:<12}", label_, "", full, "", kWidth - full,
+                                 static_cast<int>(100 * done), time_left(so_far.count(), done));
+  if (line == shown_) return;
+  shown_ = std::move(line);
+  fmt::print(stderr, "{}", shown_);
   std::fflush(stderr);
 }
 

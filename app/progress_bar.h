@@ -1,12 +1,17 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <string>
 
 namespace splatscope::app {
 
-// A line on standard error that shows how far long work is: only where that is a terminal, and not with
-// `quiet`.
+// "1:05 left" or "2:03:04 left", as far as the time up to now tells; empty while that is too little to tell:
+// less than a second, or nothing done.
+std::string time_left(double seconds_so_far, double fraction_done);
+
+// A line on standard error that shows how far long work is, and how long it will take: only where that is a
+// terminal, and not with `quiet`.
 class ProgressBar {
  public:
   ProgressBar(std::string label, bool quiet);
@@ -22,7 +27,8 @@ class ProgressBar {
  private:
   std::string label_;
   bool active_;
-  int shown_percent_ = -1;
+  std::chrono::steady_clock::time_point start_;
+  std::string shown_;  // the line; empty: none
 };
 
 }  // namespace splatscope::app

@@ -11,6 +11,7 @@
 #include "model/fragment_pipe.h"
 #include "model/geometry.h"
 #include "model/output/output.h"
+#include "model/stop.h"
 
 namespace splatscope {
 namespace {
@@ -175,6 +176,7 @@ class DrawStages {
     counters_.vertices += batch.geometry.shaded_vertices.size();
     std::size_t first = 0;
     for (const BatchTriangle& triangle : batch.geometry.triangles) {
+      stop_if_asked();
       TriangleWork work;
       work.outcome = triangle.outcome;
       work.new_vertices = triangle.new_vertices;

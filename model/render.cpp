@@ -10,6 +10,7 @@
 #include "model/geometry.h"
 #include "model/isa/program.h"
 #include "model/output/output.h"
+#include "model/stop.h"
 
 namespace splatscope {
 namespace {
@@ -97,6 +98,7 @@ class Renderer {
   }
 
   void run(std::size_t command) {
+    stop_if_asked();
     std::visit([&](const auto& body) { run(command, body); }, commands_[command]);
   }
 

@@ -5,11 +5,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "model/error.h"
+#include "model/stop.h"
 #include "traces/output_files.h"
 
 namespace splatscope::studies {
@@ -17,13 +18,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write(const fs::path& path, const OIIO::ImageSpec& spec, const void* pixels, OIIO::stride_t pixel_stride,
-           OIIO::Filesystem::IOProxy* proxy = nullptr) {
-  const auto out = OIIO::ImageOutput::create(path.string(), proxy);
-  if (!out || !out->open(path.string(), spec) ||
-      !out->write_image(OIIO::TypeDesc::FLOAT, pixels, pixel_stride) || !out->close())
+bool asked_to_stop(void*, float) {
+  return stop_signal != 0;
+}
+
+// A whole file by the format's ending. In memory: the library does not notice where a disk is full.
+std::vector<std::byte> encode(const std::string& ending, const OIIO::ImageSpec& spec, const void* pixels,
+                              OIIO::stride_t pixel_stride) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput proxy(bytes);
+  const std::string name = "picture" + ending;
+  const auto out = OIIO::ImageOutput::create(name, &proxy);
+  if (!out || !out->open(name, spec) ||
+      !out->write_image(OIIO::TypeDesc::FLOAT, pixels, pixel_stride, OIIO::AutoStride, OIIO::AutoStride,
+                        asked_to_stop) ||
+      !out->close())
     throw std::runtime_error(
-        fmt::format("{}: writing failed: {}", path.string(), out ? out->geterror() : OIIO::geterror()));
+        fmt::format("a picture could not be made: {}", out ? out->geterror() : OIIO::geterror()));
+  stop_if_asked();  // it calls a picture written that it was told to give up
+  const auto all = std::as_bytes(std::span(bytes));
+  return {all.begin(), all.end()};
 }
 
 OIIO::ImageSpec png_spec(const Image& image) {
@@ -44,18 +58,15 @@ constexpr OIIO::stride_t kPixelStride = sizeof(std::array<float, 4>);
 }  // namespace
 
 void write_exr(const Image& image, const fs::path& path) {
-  traces::OutputFile file(path);
-  write(file.temporary(), exr_spec(image.width, image.height, 4), image.pixels.data(), kPixelStride);
-  file.commit();
+  traces::write_file(
+      path, encode(".exr", exr_spec(image.width, image.height, 4), image.pixels.data(), kPixelStride));
 }
 
 void write_exr(const GrayImage& image, const fs::path& path) {
-  traces::OutputFile file(path);
   OIIO::ImageSpec spec = exr_spec(image.width, image.height, 1);
   spec.channelnames = {"Z"};
   spec.z_channel = 0;
-  write(file.temporary(), spec, image.pixels.data(), sizeof(float));
-  file.commit();
+  traces::write_file(path, encode(".exr", spec, image.pixels.data(), sizeof(float)));
 }
 
 void write_png(const Image& image, const fs::path& path) {
@@ -63,12 +74,7 @@ void write_png(const Image& image, const fs::path& path) {
 }
 
 std::vector<std::byte> encode_png(const Image& image) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput proxy(bytes);
-  write("picture.png", png_spec(image), image.pixels.data(), kPixelStride, &proxy);
-  std::vector<std::byte> result(bytes.size());
-  std::memcpy(result.data(), bytes.data(), bytes.size());
-  return result;
+  return encode(".png", png_spec(image), image.pixels.data(), kPixelStride);
 }
 
 Image read_image(const fs::path& path) {

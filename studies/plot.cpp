@@ -54,7 +54,8 @@ std::string script_of(const Plot& plot) {
 
 std::string svg_of(const Plot& plot) {
   const traces::OutputFile script(std::filesystem::temp_directory_path() / "splatscope.gnuplot");
-  std::ofstream(script.temporary()) << script_of(plot);
+  if (!(std::ofstream(script.temporary()) << script_of(plot)).flush())
+    throw std::runtime_error(script.temporary().string() + ": writing failed (is the disk full?)");
   std::FILE* pipe = ::popen(fmt::format("gnuplot {} 2>&1", quoted(script.temporary().string())).c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");
   std::string text;

@@ -1,6 +1,7 @@
 #include "studies/processes.h"
 
 #include <poll.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +12,8 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+
+#include "model/stop.h"
 
 namespace splatscope::studies {
 namespace {
@@ -80,9 +83,10 @@ class Child {
     ::close(ends[1]);
     file_ = ends[0];
   }
-  // One whose answers are no longer wanted finds its pipe closed.
+  // One whose answers are no longer wanted is ended: it has nothing of its own to put in order.
   ~Child() {
     ::close(file_);
+    ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
   }
   Child(const Child&) = delete;
@@ -110,8 +114,11 @@ std::vector<std::string> in_processes(std::size_t count, std::size_t processes,
   std::vector<std::string> answers(count);
   std::size_t answered = 0;
   while (!open.empty()) {
-    if (::poll(open.data(), open.size(), -1) < 0 && errno != EINTR)
-      throw std::system_error(errno, std::generic_category(), "poll");
+    constexpr int kMilliseconds = 100;  // until it looks whether it is asked to stop
+    stop_if_asked();
+    const int ready = ::poll(open.data(), open.size(), kMilliseconds);
+    if (ready < 0 && errno == EINTR) continue;  // what `revents` holds then is of before
+    if (ready < 0) throw std::system_error(errno, std::generic_category(), "poll");
     for (std::size_t i = open.size(); i-- > 0;) {
       if (open[i].revents == 0) continue;
       Head head;

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "model/stop.h"
 #include "traces/neighbour_search.h"
 #include "traces/splat_trace.h"
 
@@ -44,6 +45,7 @@ std::vector<char> at_edge(std::span<const Surfel> surfels) {
   std::vector<char> edge(surfels.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surfels.size()), [&](const auto& range) {
     NeighbourSearch::Found near;
+    stop_if_asked();
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       search.find(k, kNeighbours + 1, near);  // itself among them
       edge[k] = widest_gap(surfels, surfels[k], near.index) >= kWidestGap;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "model/stop.h"
 #include "traces/neighbour_search.h"
 #include "traces/splat_trace.h"
 
@@ -41,6 +42,7 @@ std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting
   std::vector<double> sums((surfels.size() + step - 1) / step);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.size(), 256), [&](const auto& range) {
     NeighbourSearch::Found near;
+    stop_if_asked();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const Surfel& asked = surfels[i * step];
       search.find(i * step, kNeighbours, near);

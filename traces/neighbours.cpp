@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "model/stop.h"
 #include "traces/neighbour_search.h"
 
 namespace splatscope::traces {
@@ -18,6 +19,7 @@ void for_each(std::span<const Surfel> surfels, std::size_t count, const Use& use
   const NeighbourSearch search(surfels);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surfels.size(), 256), [&](const auto& range) {
     NeighbourSearch::Found found;
+    stop_if_asked();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       search.find(i, count, found);
       use(i, found);

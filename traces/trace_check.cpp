@@ -6,6 +6,7 @@
 #include "model/error.h"
 #include "model/isa/program.h"
 #include "model/pixel/pixel_program.h"
+#include "model/stop.h"
 #include "model/vertex/vertex_fetch.h"
 #include "traces/trace_file.h"
 
@@ -47,6 +48,7 @@ class Checker {
     }
     in_range("number of frames", frame_ends(trace_).size(), 1, kMaxFrames);
     for (std::size_t i = 0; i < trace_.commands.size(); ++i) {
+      stop_if_asked();
       where_ = fmt::format("command {}", i);
       std::visit([this](const auto& command) { check_command(command); }, trace_.commands[i]);
     }

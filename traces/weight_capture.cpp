@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "model/render.h"
+#include "model/stop.h"
 #include "traces/edges.h"
 
 namespace splatscope::traces {
@@ -166,6 +167,7 @@ CapturedWeights capture_weights(std::span<const Surfel> surfels, const Splatting
   std::vector<float> sums(surfels.size());  // at the centres; 0: seen from no view, < 0: outside of the box
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surfels.size()), [&](const auto& range) {
     std::vector<float> scratch;
+    stop_if_asked();
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
       const glm::dvec3 position(surfels[k].position);
       const bool inside = glm::all(glm::lessThanEqual(capture.box_min, position)) &&

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kernels/reference/ray_plane.h"
+#include "model/stop.h"
 
 namespace splatscope::kernels {
 namespace {
@@ -129,7 +130,10 @@ ReferencePicture Accumulator::finish() {
 ReferencePicture ewa_reference(const View& view, std::span<const Surfel> surfels,
                                const ReferenceSettings& settings) {
   Accumulator accumulator(view, settings);
-  for (const Surfel& surfel : surfels) accumulator.add(surfel);
+  for (const Surfel& surfel : surfels) {
+    stop_if_asked();
+    accumulator.add(surfel);
+  }
   return accumulator.finish();
 }
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "model/stop.h"
+
 namespace splatscope::kernels {
 
 struct RowRange {
@@ -32,6 +34,7 @@ class RowBands {
   RowBands(int height, std::size_t splats, const Prepare& prepare)
       : height_(height), bands_((height + kRows - 1) / kRows), chunks_((splats + kChunk - 1) / kChunk) {
     oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t chunk) {
+      stop_if_asked();
       const std::size_t begin = chunk * kChunk, end = std::min(splats, begin + kChunk);
       std::vector<RowRange> rows(end - begin);
       rows.resize(prepare(begin, end, rows.data()));
@@ -49,7 +52,10 @@ class RowBands {
   // `fill(band)` for every band, in parallel.
   template <class Fill>
   void for_each_band(const Fill& fill) const {
-    oneapi::tbb::parallel_for(0, bands_, fill);
+    oneapi::tbb::parallel_for(0, bands_, [&](int band) {
+      stop_if_asked();
+      fill(band);
+    });
   }
 
   // `visit(splats)` with the numbers of the splats that touch the band, rising, a run after the other.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/error.h"
+#include "model/stop.h"
 
 // The library's own main() would call it; splatscope's programs have their own, so it is never reached.
 int sc_main(int, char*[]) {
@@ -76,6 +77,7 @@ class Run {
   void step(ClockDomain& domain) {
     if (failure_) return;
     try {
+      stop_if_asked();
       domain.run(horizon(domain));
     } catch (...) {  // SystemC would turn it into a report and stop for good
       failure_ = std::current_exception();
@@ -85,6 +87,9 @@ class Run {
   }
 
  private:
+  // Cycles that a domain runs at most before the program looks whether it is asked to stop: milliseconds.
+  static constexpr Cycle kMostAtOnce = 1 << 16;
+
   // The last cycle that `domain` may run to: the others cannot send it anything before their own next cycle.
   Cycle horizon(const ClockDomain& domain) const {
     Femtoseconds earliest = kNever;
@@ -93,7 +98,8 @@ class Run {
         earliest = std::min(earliest, process->domain()->next_time());
       }
     }
-    return earliest == kNever ? kNever - 1 : domain.first_after(earliest) - 1;
+    const Cycle last = earliest == kNever ? kNever - 1 : domain.first_after(earliest) - 1;
+    return std::min(last, domain.next_visited() + kMostAtOnce);
   }
 
   void notify_all() {

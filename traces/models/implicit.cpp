@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
+#include "model/stop.h"
+
 namespace splatscope::traces {
 namespace {
 
@@ -234,6 +236,7 @@ Mesh surface_of(const Body& body, double cell) {
   const double reach = 0.5 * std::sqrt(3.0) * (size + 2 * cell);
   tbb::parallel_for(0, count.z, [&](int z) {
     for (int y = 0; y < count.y; ++y) {
+      stop_if_asked();
       for (int x = 0; x < count.x; ++x) {
         const glm::ivec3 block = first + glm::ivec3(x, y, z);
         const Body near = bones_near(body, size * (glm::dvec3(block) + 0.5), reach);

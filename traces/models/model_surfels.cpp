@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "model/stop.h"
 #include "traces/models/sampler.h"
 #include "traces/neighbours.h"
 
@@ -48,6 +49,7 @@ std::vector<Surfel> sample_model(const Model& model, const ModelOptions& options
   const Sphere sphere = bounding_sphere(samples);
   const double unit = sphere.radius * options.pattern_scale;
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    stop_if_asked();
     const SurfacePoint point = surface_point(model.mesh, samples[i].triangle, samples[i].weights);
     const glm::vec3 color =
         options.pattern == Pattern::own

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 
+#include "model/stop.h"
 #include "traces/neighbour_search.h"
 
 namespace splatscope::traces {
@@ -67,6 +68,7 @@ void relax(const Mesh& mesh, const Voxels& voxels, const VoxelIndex& index, int 
   const auto for_each = [&](const auto& use) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 256), [&](const auto& range) {
       NeighbourSearch::Found found;
+      stop_if_asked();
       for (std::size_t i = range.begin(); i < range.end(); ++i) use(i, found);
     });
   };

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <queue>
 
+#include "model/stop.h"
 #include "traces/models/relax.h"
 #include "traces/models/triangle.h"
 #include "traces/models/voxels.h"
@@ -63,6 +64,7 @@ class Sampler {
     around_.resize(cells);
     sampled_.resize(voxels_.triangles.size());
     tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t i) {
+      stop_if_asked();
       states_[i].unsampled = static_cast<std::uint32_t>(voxels_.triangles_of(i).size());
       const SampledCell cell = seen(i);
       for (std::size_t p = 0; p < kPlaces; ++p) places_[i * kPlaces + p] = try_place(cell, p);
@@ -79,6 +81,7 @@ class Sampler {
     for (std::size_t i = 0; i < states_.size(); ++i) entries.push_back(entry(i));
     std::priority_queue heap(std::less<>(), std::move(entries));
     while (points_.size() < options_.count) {
+      stop_if_asked();
       if (progress && points_.size() % kReport == 0)
         progress(static_cast<double>(points_.size()) / static_cast<double>(options_.count));
       const std::uint32_t cell = heap.top().cell;

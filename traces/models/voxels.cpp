@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
+#include "model/stop.h"
+
 namespace splatscope::traces {
 namespace {
 
@@ -77,6 +79,7 @@ Voxels next_level(const Mesh& mesh, const Voxels& parents, int axis) {
   constexpr std::size_t kCellsAPart = 256;  // parts of fixed size: their order is the leaves' order
   std::vector<Part> parts((parents.cells.size() + kCellsAPart - 1) / kCellsAPart);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    stop_if_asked();
     const std::size_t end = std::min((part + 1) * kCellsAPart, parents.cells.size());
     for (std::size_t cell = part * kCellsAPart; cell < end; ++cell)
       halve(mesh, parents, children, axis, cell, parts[part]);
