@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <iostream>
+#include <limits>
 #include <memory>
 
 #include "app/commands.h"
@@ -117,6 +119,7 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
                    "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
       ->allow_extra_args(false);
   command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
       ->capture_default_str();
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command

@@ -1,13 +1,14 @@
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <map>
 #include <memory>
 
 #include "app/commands.h"
 #include "model/error.h"
+#include "model/input_file.h"
 #include "model/isa/program.h"
 #include "model/isa/tokens.h"
 #include "model/isa/validate.h"
@@ -51,16 +52,15 @@ void disassemble(const ShaderOptions& options) {
 
 void run_batch(const ShaderOptions& options) {
   std::ifstream cases(options.batch);
-  if (!cases) throw UserError(options.batch, 0, "cannot be read, expected a file of one JSON object a line");
+  if (!cases || std::filesystem::is_directory(options.batch))
+    throw UserError(options.batch, 0, "cannot be read, expected a file of one JSON object a line");
   studies::run_shader_batch(cases, options.batch, options.arithmetic, std::cout);
 }
 
 // Registers from a file of one JSON object, or none.
 studies::ShaderCase registers_of(const std::string& file) {
   if (file.empty()) return {"{}", "no registers", 0};
-  std::ifstream in(file);
-  if (!in) throw UserError(file, 0, "cannot be read, expected a JSON object of registers");
-  return {std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}, file, 1};
+  return {read_text_file(file, "a JSON object of registers"), file, 1};
 }
 
 void debug(const ShaderOptions& options) {

@@ -39,10 +39,10 @@ void run(const Options& options, bool quiet) {
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   std::vector<studies::SweptParameter> swept;
   for (const std::string& text : options.swept) swept.push_back(studies::swept_parameter(text));
-  traces::prepare_output_folder(options.out);
   ProgressBar running("running", quiet);
   const studies::Sweep sweep =
-      studies::run_sweep(options.input, machine, swept, fidelity, options.cache, running.callback());
+      studies::run_sweep(options.input, machine, swept, fidelity, options.cache, running.callback(),
+                         [&] { traces::prepare_output_folder(options.out); });
   running.clear();
   traces::write_file(std::filesystem::path(options.out) / "results.json",
                      studies::results_of(sweep, machine, fidelity).dump(1) + "\n");

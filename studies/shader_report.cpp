@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "model/error.h"
+#include "model/input_file.h"
 #include "model/isa/analysis.h"
 #include "model/isa/opcode.h"
 #include "model/isa/tokens.h"
@@ -43,9 +42,7 @@ isa::Program shader_of_bytes(std::span<const std::byte> bytes, std::string_view 
 }
 
 isa::Program read_shader(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw UserError(file, 0, "cannot be read, expected a shader as text or tokens");
-  const std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const std::string content = read_text_file(file, "a shader as text or tokens");
   return shader_of_bytes(std::as_bytes(std::span(content)), file);
 }
 

@@ -114,7 +114,8 @@ SweptParameter swept_parameter(std::string_view text) {
 
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
-                const std::optional<std::filesystem::path>& cache, const Progress& progress) {
+                const std::optional<std::filesystem::path>& cache, const Progress& progress,
+                const std::function<void()>& before_work) {
   const auto start = std::chrono::steady_clock::now();
   if (fidelity == Fidelity::functional)
     throw UserError("--fidelity", 0,
@@ -123,6 +124,7 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
   sweep.points = combine(parameters);
   const std::vector<Group> groups = group(machine, sweep.points);
   const auto opened = open_input(scene_or_trace);
+  if (before_work) before_work();
   std::size_t done = 0;
   for (const Group& same : groups) {
     sweep.input = make_input(opened, scene_or_trace, same.machine);

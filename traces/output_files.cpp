@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <stdexcept>
 
@@ -11,15 +12,29 @@
 namespace splatscope::traces {
 namespace fs = std::filesystem;
 
+namespace {
+
+[[noreturn]] void fail_for_disk(const fs::path& path) {
+  throw std::runtime_error(fmt::format("{}: writing failed (is the disk full?)", path.string()));
+}
+
+}  // namespace
+
 OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
   // The process's number keeps two runs apart that write to the same place; the last one to finish wins.
   temporary_ = path_.parent_path() /
                fmt::format(".{}.{}{}", path_.stem().string(), ::getpid(), path_.extension().string());
   std::error_code error;
+  if (path_.filename().empty())
+    throw UserError(fmt::format("\"{}\"", path_.string()), 0, "names no file, expected a place for one");
   if (fs::is_directory(path_, error))
     throw UserError(path_.string(), 0, "is a folder, expected a place for a file");
-  if (!std::ofstream(temporary_, std::ios::binary))
-    throw UserError(path_.string(), 0, "cannot be written, expected a file name in a writable folder");
+  if (fs::exists(path_, error) && !fs::is_regular_file(path_, error))  // /dev/null must stay what it is
+    throw UserError(path_.string(), 0, "is no ordinary file, expected a place for one");
+  errno = 0;
+  if (std::ofstream(temporary_, std::ios::binary)) return;
+  if (errno == ENOSPC || errno == EDQUOT) fail_for_disk(path_);
+  throw UserError(path_.string(), 0, "cannot be written, expected a file name in a writable folder");
 }
 
 OutputFile::~OutputFile() {
@@ -37,7 +52,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
   std::ofstream out(file.temporary(), std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: writing failed (is the disk full?)", path.string()));
+  if (!out) fail_for_disk(path);
   file.commit();
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "model/error.h"
+#include "model/stop.h"
 #include "traces/output_files.h"
 #include "traces/ply_header.h"
 
@@ -146,7 +147,10 @@ void skip_list(PlyValues& values, const PlyProperty& property) {
   const double count = values.next(property.count_type);
   if (!(count >= 0 && count <= 4294967295.0))
     values.fail(fmt::format("a list of {} items", count), "0 or more");
-  for (auto left = static_cast<std::uint64_t>(count); left > 0; --left) values.next(property.type);
+  for (auto left = static_cast<std::uint64_t>(count); left > 0; --left) {
+    stop_if_asked();
+    values.next(property.type);
+  }
 }
 
 void skip_element(PlyValues& values, const PlyElement& element) {
@@ -173,6 +177,7 @@ std::vector<Surfel> read_surfels(PlyValues& values, const PlyElement& element) {
     columns.push_back(
         {&property, property.is_list ? nullptr : place(surfel, property.name), 1 / full_scale(property)});
   for (std::uint64_t i = 0; i < element.count; ++i) {
+    stop_if_asked();
     for (const Column& column : columns) {
       if (column.property->is_list) {
         skip_list(values, *column.property);
@@ -278,6 +283,8 @@ PointFile read_ply(const std::filesystem::path& path) {
   points.has_radii = has_group(*vertex, {"radius"}, file);
   has_group(*vertex, {"red", "green", "blue"}, file);
   check_size(header, *vertex, file_size, file);
+  if (vertex->count > kMostSurfels)
+    throw UserError(file, 0, fmt::format("{} vertices, expected at most {}", vertex->count, kMostSurfels));
   std::unique_ptr<PlyValues> values;
   if (header.encoding == PlyEncoding::ascii)
     values = std::make_unique<AsciiValues>(in, file, header.lines);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -14,6 +15,8 @@ struct PointFile {
   bool has_normals = false;     // nx ny nz; as in the file, of any length
   bool has_radii = false;       // radius
 };
+
+inline constexpr std::uint64_t kMostSurfels = 1 << 26;  // of a file
 
 // Reads the element "vertex" of a PLY file (ASCII, or binary of either byte order): x y z, and where they are
 // there nx ny nz, radius, red green blue. Order and type of the properties are free; others, lists too, are

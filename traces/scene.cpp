@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "model/error.h"
+#include "model/input_file.h"
 #include "traces/gamma.h"
 #include "traces/ready_scenes.h"
 #include "traces/scene_settings.h"
@@ -14,19 +13,6 @@
 
 namespace splatscope::traces {
 namespace {
-
-std::string read_text(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kMost = 1 << 20;  // bytes: a scene file is written by hand
-  std::ifstream in(path, std::ios::binary);
-  std::error_code error;
-  const bool regular = std::filesystem::is_regular_file(path, error);
-  if (!in || !regular) throw UserError(path.string(), 0, "cannot be read, expected a scene file");
-  if (std::filesystem::file_size(path, error) > kMost)
-    throw UserError(path.string(), 0, "is larger than 1 MiB, expected a scene file");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::move(text).str();
-}
 
 // "2 apples, 1 pear": what there is none of is not listed.
 std::string listed(std::initializer_list<std::pair<std::size_t, std::string_view>> counts) {
@@ -77,7 +63,12 @@ Scene load_scene(const std::filesystem::path& name_or_path, const std::function<
         name_or_path.string(), 0,
         fmt::format("no such file, expected a scene file or the name of a ready scene: {}", names));
   }
-  return parse_scene(read_text(name_or_path), name_or_path, progress);
+  Scene scene = parse_scene(read_text_file(name_or_path, "a scene file"), name_or_path, progress);
+  if (scene.surfels.empty() && scene.skipped.total() > 0)
+    throw UserError(name_or_path.string(), 0,
+                    fmt::format("none of its surfels can be drawn: {}, expected at least one that can",
+                                describe(scene.skipped)));
+  return scene;
 }
 
 std::string describe(const SkipCounts& skipped) {

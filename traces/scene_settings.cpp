@@ -1,7 +1,6 @@
 #include "traces/scene_settings.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <glm/vector_relational.hpp>
 
 #include "model/error.h"
+#include "model/input_file.h"
 
 namespace splatscope::traces {
 namespace {
@@ -37,8 +37,9 @@ struct Store {
   }
   bool operator()(const TextValue& v) const {
     const auto value = node.value_exact<std::string>();
-    if (value) v.place(settings) = *value;
-    return value.has_value();
+    if (!value || value->find('\0') != std::string::npos) return false;  // which no name of a file holds
+    v.place(settings) = *value;
+    return true;
   }
   bool operator()(const ChoiceValue& v) const {
     const auto value = node.value_exact<std::string>();
@@ -148,13 +149,7 @@ void check_camera(const SceneSettings& settings, std::string_view file) {
 }
 
 SceneSettings parse_settings(std::string_view text, std::string_view file) {
-  toml::table root;
-  try {
-    root = toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    throw UserError(file, static_cast<int>(error.source().begin.line),
-                    fmt::format("{}, expected TOML", error.description()));
-  }
+  const toml::table root = parse_toml(text, file);
   SceneSettings settings = default_settings();
   for (const auto& [name, node] : root) {
     if (!is_table(name.str()))

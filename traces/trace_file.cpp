@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstring>
 #include <fstream>
 
@@ -191,6 +192,10 @@ class Reader {
   std::size_t budget_;
 };
 
+[[noreturn]] void fail_for_identifier(std::string_view file) {
+  throw UserError(file, 0, "is no trace (its bytes 4 to 7 are not \"SPLT\"), expected a trace file");
+}
+
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
@@ -198,7 +203,11 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
   if (error || !in) throw UserError(path.string(), 0, "cannot be read, expected a trace file");
   if (size >= FLATBUFFERS_MAX_BUFFER_SIZE)
     throw UserError(path.string(), 0, "is larger than 2 GiB, expected a trace file");
+  std::array<std::uint8_t, 8> start{};  // before memory is taken for the rest
+  in.read(reinterpret_cast<char*>(start.data()), start.size());
+  if (!in || !stored::TraceBufferHasIdentifier(start.data())) fail_for_identifier(path.string());
   std::vector<std::uint8_t> bytes(size);
+  in.seekg(0);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (!in) throw UserError(path.string(), 0, "ended while it was read, expected a trace file");
   return bytes;
@@ -225,10 +234,11 @@ std::vector<std::byte> trace_bytes(const Trace& trace) {
 }
 
 Trace read_trace(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  const std::vector<std::uint8_t> bytes = read_bytes(path);
-  if (bytes.size() < 8 || !stored::TraceBufferHasIdentifier(bytes.data()))
-    throw UserError(file, 0, "is no trace (its bytes 4 to 7 are not \"SPLT\"), expected a trace file");
+  return trace_of_bytes(read_bytes(path), path.string());
+}
+
+Trace trace_of_bytes(std::span<const std::uint8_t> bytes, std::string_view file) {
+  if (bytes.size() < 8 || !stored::TraceBufferHasIdentifier(bytes.data())) fail_for_identifier(file);
   // A table takes at least 8 bytes, so an honest file has no more of them; the limit bounds the time taken.
   constexpr fb::uoffset_t kDepth = 8;
   fb::Verifier verifier(bytes.data(), bytes.size(), kDepth, static_cast<fb::uoffset_t>(bytes.size() / 8));

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,9 @@ std::vector<std::byte> trace_bytes(const Trace& trace);
 // Throws UserError where the file cannot be read, is damaged, newer than this program, or breaks a rule of
 // check_trace. The memory taken is at most a small multiple of the file's size.
 Trace read_trace(const std::filesystem::path& path);
+
+// The same of a file's bytes, which must begin at an address that is a multiple of 8 (FlatBuffers).
+Trace trace_of_bytes(std::span<const std::uint8_t> bytes, std::string_view file);
 
 // Every rule that the model and the simulator rely on: sizes, indices, ranges, and programs that load.
 // Throws UserError "file: what, expected what".

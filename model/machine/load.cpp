@@ -1,14 +1,11 @@
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "model/embedded_file.h"
 #include "model/error.h"
+#include "model/input_file.h"
 #include "model/machine/machine.h"
 #include "model/machine/parameters.h"
 
@@ -86,7 +83,8 @@ void assign(Machine& machine, const Parameter& parameter, const toml::node& valu
     field->of(machine) = static_cast<int>(number);
   } else if (const auto* field = std::get_if<RealField>(&parameter.field)) {
     if (!value.is_number()) refuse("has the wrong type");
-    const double number = *value.value<double>();
+    const double number = value.is_integer() ? static_cast<double>(value.as_integer()->get())
+                                             : value.as_floating_point()->get();
     if (!(number >= field->least && number <= field->most))
       refuse(fmt::format("is out of range ({:g})", number));
     field->of(machine) = number;
@@ -209,15 +207,6 @@ std::string text_of(const toml::node& node, std::string_view key, std::string_vi
   return node.as_string()->get();
 }
 
-toml::table parse_toml(std::string_view text, std::string_view file) {
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    throw UserError(file, static_cast<int>(error.source().begin.line),
-                    fmt::format("{}, expected TOML", error.description()));
-  }
-}
-
 }  // namespace
 
 std::vector<std::string_view> built_in_names() {
@@ -268,11 +257,7 @@ Machine load(std::string_view name_or_path) {
         name_or_path, 0,
         fmt::format("no such machine, expected {} or a .toml file", fmt::join(built_in_names(), ", ")));
   }
-  std::ifstream stream{std::string(name_or_path)};
-  if (!stream) throw UserError(name_or_path, 0, "cannot be read, expected a machine in TOML");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse(text.str(), name_or_path);
+  return parse(read_text_file(name_or_path, "a machine in TOML"), name_or_path);
 }
 
 void set(Machine& machine, std::string_view assignment) {

@@ -199,6 +199,9 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   const bool regular = std::filesystem::is_regular_file(path, error);
   if (!regular || !std::ifstream(path)) throw UserError(file, 0, "cannot be read, expected a mesh");
   if (ending_of(path) == ".off") check_off_size(path, std::filesystem::file_size(path));
+  if (ending_of(path) == ".ply" &&
+      !ply_has_faces(path))  // its header is right, too: assimp's reader hangs on some
+    throw UserError(file, 0, "holds no faces, expected a mesh");
   Assimp::Importer importer;
   if (!importer.IsExtensionSupported(ending_of(path)))
     throw UserError(file, 0,

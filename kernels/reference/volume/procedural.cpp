@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "model/stop.h"
+
 namespace splatscope::kernels {
 namespace {
 
@@ -17,6 +19,7 @@ constexpr double kPi = std::numbers::pi;
 template <class At>
 Volume filled(Volume volume, const At& at) {
   oneapi::tbb::parallel_for(0, volume.size.z, [&](int z) {
+    stop_if_asked();
     for (int y = 0; y < volume.size.y; ++y) {
       for (int x = 0; x < volume.size.x; ++x) {
         const glm::ivec3 voxel{x, y, z};

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "model/stop.h"
+
 namespace splatscope::kernels {
 namespace {
 
@@ -38,6 +40,7 @@ VolumeSplats grid_splats(const Volume& volume, const TransferFunction& transfer,
   const double cell = volume.spacing.x * volume.spacing.y * volume.spacing.z;
   std::vector<std::vector<VolumeSplat>> layers(static_cast<std::size_t>(volume.size.z));
   oneapi::tbb::parallel_for(0, volume.size.z, [&](int z) {
+    stop_if_asked();
     std::vector<VolumeSplat>& layer = layers[static_cast<std::size_t>(z)];
     glm::ivec3 voxel{0, 0, z};
     for (voxel.y = 0; voxel.y < volume.size.y; ++voxel.y) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+// Files that people write by hand: programs, scenes, machines.
+namespace splatscope {
+
+inline constexpr std::size_t kMostTextBytes = 1 << 20;
+
+// All of a file, or of a pipe. Throws UserError "path: ..., expected WHAT" where it is missing, a folder,
+// or larger than kMostTextBytes, of which no more is read.
+std::string read_text_file(const std::filesystem::path& path, std::string_view expected);
+
+// Throws UserError "file:line: ..." where `text` is no TOML, or names tables within tables so deep that no
+// file of splatscope could mean it.
+toml::table parse_toml(std::string_view text, std::string_view file);
+
+}  // namespace splatscope

@@ -1,0 +1,129 @@
+#include "cases.h"
+#include "traces/scene_keys.h"
+
+namespace splatscope::tests {
+namespace {
+
+template <class... Parts>
+struct Overloaded : Parts... {
+  using Parts::operator()...;
+};
+template <class... Parts>
+Overloaded(Parts...) -> Overloaded<Parts...>;
+
+// What no key of the kind takes, as it stands in a file.
+std::vector<std::string> bad_values(const traces::SceneKey& key) {
+  using Values = std::vector<std::string>;
+  return std::visit(
+      Overloaded{
+          [](const traces::RealValue&) {
+            return Values{"nan", "inf", "-inf", "1e300", "-1e300", "\"1\"", "true", "[1]", "1979-05-27"};
+          },
+          [](const traces::IntegerValue&) {
+            return Values{"nan", "inf", "9223372036854775807", "99999999999999999999", "-1", "1.5", "{}"};
+          },
+          [](const traces::BooleanValue&) {
+            return Values{"nan", "1", "\"true\"", "[]"};
+          },
+          [](const traces::TextValue&) {
+            return Values{"nan", "5", "[\"a\"]"};
+          },
+          [](const traces::ChoiceValue&) {
+            return Values{"nan", "0", "\"\"", "\"none such\""};
+          },
+          [](const traces::VectorValue&) {
+            return Values{"nan",    "[nan, 0, 0]",  "[0, inf, 0]", "[0, 0, 1e300]",
+                          "[0, 0]", "[0, 0, 0, 0]", "\"x\""};
+          }},
+      key.value);
+}
+
+const std::vector<std::string> kRecord = {"record", "bad.toml", "-o", "bad.trace"};
+
+TEST(BadInputs, ScenesWithAWrongValue) {
+  BadInputs inputs;
+  for (const traces::SceneKey& key : traces::scene_keys()) {
+    for (const std::string& value : bad_values(key)) {
+      const std::string line = fmt::format("{} = {}\n", key.name, value);
+      inputs.file("bad.toml", fmt::format("[{}]\n{}", key.table, line));
+      inputs.refused(fmt::format("[{}] {}", key.table, line), kRecord);
+    }
+  }
+  EXPECT_GE(inputs.count(), 200);
+}
+
+// All keys at their defaults, small: the first bytes are beyond any cut.
+TEST(BadInputs, ScenesCutShort) {
+  BadInputs inputs;
+  std::string table = "surfels", rest;
+  for (const traces::SceneKey& key : traces::scene_keys()) {
+    if (table != key.table) rest += fmt::format("[{}]\n", key.table);
+    table = key.table;
+    const bool small = key.table == "surfels" && (key.name == "columns" || key.name == "rows");
+    if (!small) rest += fmt::format("{} = {}\n", key.name, traces::default_text(key));
+  }
+  const std::string start = "[surfels]\ncolumns = 4\nrows = 4\n";
+  BadInputs whole;
+  whole.file("whole.toml", start + rest);
+  whole.refused_or_used("whole", {"record", "whole.toml", "-o", "whole.trace"});
+  for (std::size_t size = 0; size < rest.size(); size += 64) {
+    inputs.file("bad.toml", start + rest.substr(0, size));
+    inputs.refused_or_used(fmt::format("{} bytes", start.size() + size), kRecord);
+  }
+  EXPECT_GE(inputs.count(), 10);
+}
+
+struct Bad {
+  const char* what;
+  std::string text;
+};
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+TEST(BadInputs, ScenesThatAreNone) {
+  BadInputs inputs;
+  const Bad bad[] = {
+      {"binary", std::string("\x7f"
+                             "ELF\x02\x01\x01\0\0\0\xff\xfe",
+                             12)},
+      {"zeros", std::string(4096, '\0')},
+      {"no UTF-8", "[surfels]\nfile = \"\xff\xfe\"\n"},
+      {"2 MiB of spaces", std::string(2 << 20, ' ')},
+      {"an array in 100000 arrays", "[surfels]\nfile = " + std::string(100000, '[')},
+      {"a table in 100000 tables", "[surfels]\nfile = " + repeated("{a=", 100000)},
+      {"a key of 100000 parts", repeated("a.", 100000) + "a = 1\n"},
+      {"a table of 100000 parts", "[" + repeated("a.", 100000) + "a]\n"},
+      {"a table twice", "[frame]\nwidth = 8\n[frame]\nwidth = 9\n"},
+      {"a key twice", "[frame]\nwidth = 8\nwidth = 9\n"},
+      {"a value for a table", "frame = 3\n"},
+      {"tables for a table", "[[frame]]\nwidth = 8\n"},
+      {"an unknown table", "[lights]\n"},
+      {"an unknown key", "[frame]\ndepth = 8\n"},
+      {"a string without end", "[surfels]\nfile = \"x\n"},
+      {"near beyond far", "[camera]\nnear = 5\nfar = 5\n"},
+      {"no view", "[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]\n"},
+      {"up along the view", "[camera]\neye = [0, 0, 0]\ntarget = [0, 5, 0]\nup = [0, 1, 0]\n"},
+      {"no up", "[camera]\nup = [0, 0, 0]\n"},
+      {"a box inside out", "[capture]\nbox_min = [1, 0, 0]\nbox_max = [0, 1, 1]\n"},
+      {"refine of the wrong algorithm", "[splatting]\nalgorithm = \"no-ewa\"\nrefine = true\n"},
+      {"a missing file", "[surfels]\nfile = \"none.ply\"\n"},
+      {"a folder as file", "[surfels]\nfile = \".\"\n"},
+      {"itself as file", "[surfels]\nfile = \"bad.toml\"\n"},
+      {"a device as file", "[surfels]\nfile = \"/dev/zero\"\n"},
+      {"a name of 5000 bytes", "[surfels]\nfile = \"" + std::string(5000, 'x') + ".ply\"\n"},
+      {"a name with a line's end", "[surfels]\nfile = \"a\\nb.ply\"\n"},
+      {"a name with a zero", "[surfels]\nfile = \"a\\u0000b.ply\"\n"},
+  };
+  for (const Bad& b : bad) {
+    inputs.file("bad.toml", b.text);
+    inputs.refused(b.what, kRecord);
+    inputs.refused(b.what, {"run", "bad.toml", "--fidelity", "functional"});
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::tests
