@@ -157,12 +157,12 @@ class DrawStages {
 
   // Whether the draw's cull mode drops a piece. What decides is the sign on the grid that decides coverage,
   // so a triangle that is dropped and its neighbour that is not never share a pixel.
-  bool culled(const Piece& piece) const {
+  bool culled(const raster::TriangleSetup& piece) const {
     switch (state_.cull) {
       case CullMode::clockwise:
-        return piece.setup.winding > 0;
+        return piece.winding > 0;
       case CullMode::counter_clockwise:
-        return piece.setup.winding < 0;
+        return piece.winding < 0;
       case CullMode::none:
         break;
     }
@@ -182,9 +182,10 @@ class DrawStages {
       work.new_vertices = triangle.new_vertices;
       work.pieces = 0;
       for (std::size_t piece = first; piece < first + triangle.pieces; ++piece) {
-        if (culled(batch.geometry.piece(piece))) continue;
+        const raster::TriangleSetup& setup = batch.geometry.setup(piece);
+        if (culled(setup)) continue;
         ++work.pieces;
-        rasterize(piece, batch.geometry.piece(piece).setup, work, take);
+        rasterize(piece, setup, work, take);
       }
       first += triangle.pieces;
       if (work.pieces == 0 && triangle.pieces != 0) work.outcome = TriangleOutcome::back_facing;

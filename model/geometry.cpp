@@ -1,5 +1,7 @@
 #include "model/geometry.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cstring>
 #include <iterator>
@@ -12,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kCorners = 3;
 constexpr std::size_t kIndices = 1 << 16;
+constexpr std::uint32_t kManyNumbers = 1u << 31;  // more than that are not given out before a draw
 
 }  // namespace
 
@@ -36,7 +39,7 @@ void GeometryBatch::clear() {
   shaded_vertices.clear();
   triangles.clear();
   piece_corners_.clear();
-  clipped_attributes_.clear();
+  attributes_.resize(kVertices);
 }
 
 void GeometryBatch::process() {
@@ -54,6 +57,7 @@ void GeometryBatch::shade() {
     const unsigned grouped = vertex::fetch_grouped(
         inputs_, bindings_.vertices.bytes, bindings_.draw.vertex_stride,
         std::span(vertices).subspan(first, count), program_.input(), program_.grouped_input());
+    prefetch(first + count);
     program_.run(static_cast<int>(count), grouped);
     primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
                        first);
@@ -70,6 +74,13 @@ void GeometryBatch::shade() {
   }
 }
 
+// Fetches ahead what the vertices from `first` read: their bytes come from memory while a program runs.
+void GeometryBatch::prefetch(std::size_t first) const {
+  const std::size_t end = std::min(vertices.size(), first + vertex::kBatch);
+  for (std::size_t i = first; i < end; ++i)
+    hwy::Prefetch(bindings_.vertices.bytes.data() + std::size_t{vertices[i]} * bindings_.draw.vertex_stride);
+}
+
 void GeometryBatch::assemble(BatchTriangle& triangle) {
   const auto [a, b, c] = triangle.vertices;
   const auto& outside = projected_.outside;
@@ -79,7 +90,7 @@ void GeometryBatch::assemble(BatchTriangle& triangle) {
     return;
   }
   triangle.pieces = 1;
-  add_piece({&attributes_[a], &attributes_[b], &attributes_[c]});
+  add_piece({a, b, c});
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     const std::size_t i = triangle.vertices[corner];
     corners_.set(waiting_ - 1, corner, projected_.x[i], projected_.y[i], projected_.z[i],
@@ -97,10 +108,12 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
   triangle.outcome = assembled.outcome;
   triangle.pieces = static_cast<std::uint8_t>(assembled.pieces);
   for (std::size_t piece = 0; piece < triangle.pieces; ++piece) {
-    std::array<const raster::Attributes*, kCorners> attributes{};
-    for (std::size_t corner = 0; corner < kCorners; ++corner)
-      attributes[corner] = &clipped_attributes_.emplace_back(clipped_[piece][corner].attributes);
-    add_piece(attributes);
+    std::array<std::uint32_t, kCorners> places;
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      places[corner] = static_cast<std::uint32_t>(attributes_.size());
+      attributes_.push_back(clipped_[piece][corner].attributes);
+    }
+    add_piece(places);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       const primitive::WindowVertex& vertex = clipped_[piece][corner];
       corners_.set(waiting_ - 1, corner, vertex.x, vertex.y, vertex.z, vertex.inverse_w);
@@ -108,7 +121,7 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
   }
 }
 
-void GeometryBatch::add_piece(const std::array<const raster::Attributes*, 3>& corners) {
+void GeometryBatch::add_piece(const std::array<std::uint32_t, 3>& corners) {
   if (waiting_ == raster::Corners::kCapacity) set_up();
   piece_corners_.push_back(corners);
   ++waiting_;
@@ -130,52 +143,53 @@ std::int64_t GeometryBatch::pixels_at_most() const {
 }
 
 Indices::Indices(int cache_entries)
-    : cache_entries_(static_cast<std::uint64_t>(cache_entries)), known_(kIndices) {}
+    : cache_entries_(static_cast<std::uint32_t>(cache_entries)), known_(kIndices) {}
 
 void Indices::begin(const DrawBindings& bindings) {
   bindings_ = &bindings;
   position_ = 0;
   shaded_ += cache_entries_ + 1;  // nothing is left in the FIFO
+  if (shaded_ < kManyNumbers && batch_ < kManyNumbers) return;
+  std::ranges::fill(known_, Known{});
+  batch_ = shaded_ = 0;
 }
 
-std::uint32_t Indices::index_at(std::uint32_t position) const {
-  std::uint16_t index;
-  std::memcpy(&index, bindings_->indices.bytes.data() + std::size_t{position} * sizeof index, sizeof index);
-  return index;
+std::array<std::uint16_t, kCorners> Indices::indices_of(std::uint32_t position) const {
+  std::array<std::uint16_t, kCorners> indices;
+  std::memcpy(&indices, bindings_->indices.bytes.data() + std::size_t{position} * sizeof(std::uint16_t),
+              sizeof indices);
+  return indices;
 }
 
-std::uint16_t Indices::place_of(std::uint32_t index, GeometryBatch& batch, std::uint8_t& new_vertices) {
-  Known& known = known_[index];
+std::uint16_t Indices::place_of(std::uint32_t index, Known& known, GeometryBatch& batch,
+                                std::uint8_t& new_vertices) {
   const std::uint32_t number = bindings_->draw.base_vertex + index;
   if (known.inserted == 0 || shaded_ - (known.inserted - 1) > cache_entries_) {
     batch.shaded_vertices.push_back(number);
     known.inserted = ++shaded_;
     ++new_vertices;
   }
-  if (known.batch != batch_) {
-    known.batch = batch_;
-    known.place = static_cast<std::uint16_t>(batch.vertices.size());
+  if (known.batch < batch_) {
+    known.batch = batch_ + static_cast<std::uint32_t>(batch.vertices.size());
     batch.vertices.push_back(number);
   }
-  return known.place;
+  return static_cast<std::uint16_t>(known.batch - batch_);
 }
 
 bool Indices::fill(GeometryBatch& batch) {
   batch.clear();
-  ++batch_;
+  batch_ += GeometryBatch::kVertices;
   const Draw& draw = bindings_->draw;
   for (; position_ + kCorners <= draw.index_count; position_ += kCorners) {
-    std::array<std::uint32_t, kCorners> corners;
+    const auto index = indices_of(draw.first_index + position_);
+    Known* const known[kCorners] = {&known_[index[0]], &known_[index[1]], &known_[index[2]]};
     std::size_t size = batch.vertices.size();  // with this triangle, at most
-    for (std::uint32_t corner = 0; corner < kCorners; ++corner) {
-      corners[corner] = index_at(draw.first_index + position_ + corner);
-      size += known_[corners[corner]].batch != batch_;
-    }
+    for (const Known* corner : known) size += corner->batch < batch_;
     // Exactly full, a batch of whole quads ends with one.
     if (size > GeometryBatch::kVertices) break;
     BatchTriangle& triangle = batch.triangles.emplace_back();
-    for (std::uint32_t corner = 0; corner < kCorners; ++corner)
-      triangle.vertices[corner] = place_of(corners[corner], batch, triangle.new_vertices);
+    for (std::size_t corner = 0; corner < kCorners; ++corner)
+      triangle.vertices[corner] = place_of(index[corner], *known[corner], batch, triangle.new_vertices);
   }
   return !batch.triangles.empty();
 }

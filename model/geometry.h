@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -24,7 +23,7 @@ struct BatchTriangle {
 // A piece of a triangle: mostly the triangle itself.
 struct Piece {
   const raster::TriangleSetup& setup;
-  const std::array<const raster::Attributes*, 3>& corners;
+  std::array<const raster::Attributes*, 3> corners;
 };
 
 class GeometryBatch {
@@ -44,18 +43,23 @@ class GeometryBatch {
   void process();
 
   // The pieces of all triangles, in order.
-  Piece piece(std::size_t i) const { return {setups_[i], piece_corners_[i]}; }
+  Piece piece(std::size_t i) const {
+    const auto [a, b, c] = piece_corners_[i];
+    return {setups_[i], {&attributes_[a], &attributes_[b], &attributes_[c]}};
+  }
+  const raster::TriangleSetup& setup(std::size_t piece) const { return setups_[piece]; }
   // Of the rectangles of all pieces together.
   std::int64_t pixels_at_most() const;
 
  private:
   void shade();
+  void prefetch(std::size_t first) const;
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);
   Vec4 position_of(std::size_t vertex) const {
     return {positions_[0][vertex], positions_[1][vertex], positions_[2][vertex], positions_[3][vertex]};
   }
-  void add_piece(const std::array<const raster::Attributes*, 3>& corners);
+  void add_piece(const std::array<std::uint32_t, 3>& corners);
   void set_up();
 
   const DrawBindings& bindings_;
@@ -64,14 +68,13 @@ class GeometryBatch {
   std::vector<VertexAttribute> inputs_;  // that the program reads
   vertex::VertexProgram::Bound program_;
   std::array<std::array<float, kVertices>, 4> positions_;  // x y z w
-  std::vector<raster::Attributes> attributes_;
+  std::vector<raster::Attributes> attributes_;  // of the vertices, and behind them of clipped corners
   primitive::ProjectedVertices projected_;
   std::array<primitive::WindowTriangle, primitive::kMaxPieces> clipped_;
-  std::deque<raster::Attributes> clipped_attributes_;
   raster::Corners corners_;                    // of the last pieces, which are not set up yet
   std::size_t waiting_ = 0;                    // how many these are
   std::vector<raster::TriangleSetup> setups_;  // of each piece; those behind the last one are left over
-  std::vector<std::array<const raster::Attributes*, 3>> piece_corners_;
+  std::vector<std::array<std::uint32_t, 3>> piece_corners_;  // their places in `attributes_`
 };
 
 // Walks the indices of a draw with the post-transform FIFO, batch by batch; one draw after the other.
@@ -85,19 +88,18 @@ class Indices {
 
  private:
   struct Known {                 // of an index
-    std::uint64_t inserted = 0;  // into the FIFO: 0 never, else 1 + its place in the order of shading
-    std::uint32_t batch = 0;     // the last one it was in
-    std::uint16_t place = 0;     // there
+    std::uint32_t inserted = 0;  // into the FIFO: 0 never, else 1 + its place in the order of shading
+    std::uint32_t batch = 0;     // the last one it was in, times kVertices, and its place there
   };
-  std::uint32_t index_at(std::uint32_t position) const;
-  std::uint16_t place_of(std::uint32_t index, GeometryBatch& batch, std::uint8_t& new_vertices);
+  std::array<std::uint16_t, 3> indices_of(std::uint32_t position) const;  // of a triangle
+  std::uint16_t place_of(std::uint32_t index, Known& known, GeometryBatch& batch, std::uint8_t& new_vertices);
 
   const DrawBindings* bindings_ = nullptr;
-  std::uint64_t cache_entries_;
+  std::uint32_t cache_entries_;
   std::vector<Known> known_;
   std::uint32_t position_ = 0;  // in the draw
-  std::uint32_t batch_ = 0;     // of all draws, as is
-  std::uint64_t shaded_ = 0;
+  std::uint32_t batch_ = 0;     // times kVertices; of all draws, as is
+  std::uint32_t shaded_ = 0;
 };
 
 }  // namespace splatscope

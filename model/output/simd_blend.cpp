@@ -8,6 +8,7 @@
 
 #include <cstring>
 
+#include "model/number/simd_integer-inl.h"
 #include "model/output/output.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,7 +26,8 @@ HWY_INLINE V saturated(V value) {
 }
 // quantize_unorm8 where `steps` is 255
 HWY_INLINE VI quantized(V value, float steps = 255) {
-  return hn::ConvertTo(I{}, hn::Add(hn::Mul(saturated(value), hn::Set(F{}, steps)), hn::Set(F{}, 0.5f)));
+  return splatscope::HWY_NAMESPACE::integer(
+      hn::Add(hn::Mul(saturated(value), hn::Set(F{}, steps)), hn::Set(F{}, 0.5f)));
 }
 
 void receive(float* values, std::size_t count, ColorFormat format) {

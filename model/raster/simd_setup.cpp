@@ -13,6 +13,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, 8>;
 using F = hn::Rebind<float, D>;
+using I = hn::Rebind<std::int32_t, D>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 constexpr std::size_t kMaxLanes = 8;
@@ -27,11 +28,16 @@ struct Points {
 
 // The results of one register of triangles, on their way into structures.
 struct alignas(64) Lanes {
-  double edge_origin[3][kMaxLanes], edge_dx[3][kMaxLanes], edge_dy[3][kMaxLanes];
-  double left[kMaxLanes], top[kMaxLanes], right[kMaxLanes], bottom[kMaxLanes];
-  double winding[kMaxLanes];
+  double edge_origin[3][kMaxLanes];
+  std::int32_t edge_dx[3][kMaxLanes], edge_dy[3][kMaxLanes];
+  std::int32_t left[kMaxLanes], top[kMaxLanes], right[kMaxLanes], bottom[kMaxLanes];
+  std::int32_t winding[kMaxLanes];
   float planes[4][3][kMaxLanes];
 };
+
+HWY_INLINE void store_integers(V value, std::int32_t* to) {
+  hn::StoreU(hn::DemoteTo(I{}, value), I{}, to);
+}
 
 struct Grid {
   Grid(int subpixel_bits)  // twice as fine, so that pixel centres lie on it for 0 subpixel bits too
@@ -63,8 +69,8 @@ HWY_INLINE void store_edge(const Grid& grid, V from_x, V from_y, V to_x, V to_y,
   const V at_centre = hn::Sub(hn::Mul(dx, hn::Sub(centre_y, from_y)), hn::Mul(dy, hn::Sub(centre_x, from_x)));
   const V origin = hn::Sub(at_centre, hn::IfThenZeroElse(top_or_left, set(1)));
   hn::Store(hn::Floor(hn::Mul(origin, grid.inverse)), D{}, out.edge_origin[e]);
-  hn::Store(hn::Neg(dy), D{}, out.edge_dx[e]);
-  hn::Store(dx, D{}, out.edge_dy[e]);
+  store_integers(hn::Neg(dy), out.edge_dx[e]);
+  store_integers(dx, out.edge_dy[e]);
 }
 
 // Rectangle, edges and winding.
@@ -74,16 +80,17 @@ HWY_INLINE void set_up_coverage(Points p, const Grid& grid, const primitive::Vie
   const V zero = hn::Zero(D{}), one = set(1);
   const V left = hn::Max(zero, grid.first_pixel(least(p.x)));
   const V top = hn::Max(zero, grid.first_pixel(least(p.y)));
-  hn::Store(left, D{}, out.left);
-  hn::Store(top, D{}, out.top);
-  hn::Store(hn::Min(set(viewport.width), grid.first_pixel(hn::Add(greatest(p.x), one))), D{}, out.right);
-  hn::Store(hn::Min(set(viewport.height), grid.first_pixel(hn::Add(greatest(p.y), one))), D{}, out.bottom);
+  store_integers(left, out.left);
+  store_integers(top, out.top);
+  store_integers(hn::Min(set(viewport.width), grid.first_pixel(hn::Add(greatest(p.x), one))), out.right);
+  store_integers(hn::Min(set(viewport.height), grid.first_pixel(hn::Add(greatest(p.y), one))), out.bottom);
 
   // Twice the signed area; positive where the corners run clockwise in the window (y points down).
   const V area = hn::Sub(hn::Mul(hn::Sub(p.x[1], p.x[0]), hn::Sub(p.y[2], p.y[0])),
                          hn::Mul(hn::Sub(p.y[1], p.y[0]), hn::Sub(p.x[2], p.x[0])));
-  hn::Store(hn::Sub(hn::IfThenElseZero(hn::Gt(area, zero), one), hn::IfThenElseZero(hn::Lt(area, zero), one)),
-            D{}, out.winding);
+  store_integers(
+      hn::Sub(hn::IfThenElseZero(hn::Gt(area, zero), one), hn::IfThenElseZero(hn::Lt(area, zero), one)),
+      out.winding);
   exchange(hn::Lt(area, zero), p.x[1], p.x[2]);
   exchange(hn::Lt(area, zero), p.y[1], p.y[2]);
   const V half = hn::Mul(grid.pixel, set(0.5));
@@ -112,8 +119,10 @@ HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, L
   const V x2 = hn::Sub(p.x[2], p.x[0]), y2 = hn::Sub(p.y[2], p.y[0]);
   const V area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
   const V inverse_area = hn::IfThenZeroElse(hn::Eq(area, hn::Zero(D{})), hn::Div(set(1), area));
-  const V px = hn::Sub(hn::Add(hn::Load(D{}, out.left), set(0.5)), p.x[0]);
-  const V py = hn::Sub(hn::Add(hn::Load(D{}, out.top), set(0.5)), p.y[0]);
+  const auto read = [](const std::int32_t* from)
+                        HWY_ATTR { return hn::PromoteTo(D{}, hn::LoadU(I{}, from)); };
+  const V px = hn::Sub(hn::Add(read(out.left), set(0.5)), p.x[0]);
+  const V py = hn::Sub(hn::Add(read(out.top), set(0.5)), p.y[0]);
   const auto linear = [&](V dx, V dy) HWY_ATTR {
     return Linear{hn::Add(hn::Mul(dx, px), hn::Mul(dy, py)), dx, dy};
   };
@@ -130,17 +139,16 @@ HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, L
 }
 
 HWY_INLINE void read(const Lanes& in, std::size_t lane, TriangleSetup& out) {
-  out.left = static_cast<int>(in.left[lane]);
-  out.top = static_cast<int>(in.top[lane]);
-  out.right = static_cast<int>(in.right[lane]);
-  out.bottom = static_cast<int>(in.bottom[lane]);
-  out.winding = static_cast<int>(in.winding[lane]);
+  out.left = in.left[lane];
+  out.top = in.top[lane];
+  out.right = in.right[lane];
+  out.bottom = in.bottom[lane];
+  out.winding = in.winding[lane];
   out.covers = out.winding != 0 && out.left < out.right && out.top < out.bottom;
   if (!out.covers) return;
   for (std::size_t e = 0; e < 3; ++e) {
-    out.edges[e] = {static_cast<std::int64_t>(in.edge_origin[e][lane]),
-                    static_cast<std::int32_t>(in.edge_dx[e][lane]),
-                    static_cast<std::int32_t>(in.edge_dy[e][lane])};
+    out.edges[e] = {static_cast<std::int64_t>(in.edge_origin[e][lane]), in.edge_dx[e][lane],
+                    in.edge_dy[e][lane]};
   }
   Plane* planes[] = {&out.depth, &out.weight1, &out.weight2, &out.scale};
   for (std::size_t k = 0; k < 4; ++k)

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "model/number/simd_integer-inl.h"
 #include "model/output/output.h"
 #include "model/raster/raster.h"
 
@@ -93,22 +94,20 @@ HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
   return mask;
 }
 
-// Window z as the depth buffer stores it: output::quantize_depth.
+// Window z as the depth buffer stores it: output::quantize_depth. floor(z (2^n - 1) + 1/2) is that of
+// 2^n z - z + 1/2, of which 2^n z is exact: where its fraction f and z cross a half, it is off by one. f -
+// 1/2 is exact where f reaches 1/2, and f + 1/2 where z does.
 HWY_INLINE hn::Vec<U> quantize(VF z, DepthFormat format) {
-  const VF zero = hn::Zero(F{});
+  const VF zero = hn::Zero(F{}), half = hn::Set(F{}, 0.5f);
   const VF clamped = hn::IfThenElseZero(hn::Gt(z, zero), hn::Min(z, hn::Set(F{}, 1.0f)));
   if (format == DepthFormat::float32) return hn::BitCast(U{}, clamped);
-  const hn::Half<F> half;
-  const hn::Rebind<double, hn::Half<F> > wide;
-  const hn::Half<I> integers;
-  const auto largest = hn::Set(wide, format == DepthFormat::z16 ? 65535.0 : 16777215.0);
-  const auto rounded = [&](hn::Vec<hn::Half<F> > values) HWY_ATTR {
-    const auto scaled = hn::Mul(hn::PromoteTo(wide, values), largest);
-    return hn::DemoteTo(integers, hn::Add(scaled, hn::Set(wide, 0.5)));
-  };
-  const VI both =
-      hn::Combine(I{}, rounded(hn::UpperHalf(half, clamped)), rounded(hn::LowerHalf(half, clamped)));
-  return hn::BitCast(U{}, both);
+  const VF scaled = hn::Mul(clamped, hn::Set(F{}, format == DepthFormat::z16 ? 0x1p16f : 0x1p24f));
+  const VI whole = splatscope::HWY_NAMESPACE::integer(scaled);
+  const VF fraction = hn::Sub(scaled, hn::ConvertTo(F{}, whole));
+  const auto minus_one = [](auto mask) HWY_ATTR { return hn::BitCast(I{}, hn::VecFromMask(F{}, mask)); };
+  const VI more = minus_one(hn::Ge(hn::Sub(fraction, half), clamped));
+  const VI less = minus_one(hn::Lt(hn::Add(fraction, half), clamped));
+  return hn::BitCast(U{}, hn::Add(hn::Sub(whole, more), less));
 }
 
 // Places of pairs of pixels: of two rows that stand one after the other, quad by quad; and back.
@@ -128,40 +127,45 @@ constexpr Order make_order(std::size_t lanes) {
 }
 constexpr Order kOrder = make_order(hn::MaxLanes(I{}));
 
-// Tests the covered pixels of a window against `stored`, which holds all of its rows `stride` apart.
+// Tests the covered pixels of a window against `stored`, which holds all of its rows `stride` apart. All is
+// read before anything is written: a processor makes reads wait for writes a power of two bytes away.
 HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarget& target,
                                     const Window& window, std::uint32_t* stored, std::size_t stride) {
+  constexpr std::size_t kLanes = hn::MaxLanes(I{}), kBlocks = 64 / kLanes;
   const hn::Half<U> half;
   const auto to_quads = hn::SetTableIndices(U{}, kOrder.quads_of_rows);
   const auto to_rows = hn::SetTableIndices(U{}, kOrder.rows_of_quads);
+  const auto place_of = [&](std::size_t block) {  // of its upper row
+    const std::size_t bit = block * kLanes;
+    return stored + bit / kRowLanes * 2 * stride + bit % kRowLanes / 2;
+  };
+  hn::Vec<U> old[kBlocks];
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    const std::uint32_t* upper = place_of(block);
+    old[block] = hn::Combine(U{}, hn::LoadU(half, upper + stride), hn::LoadU(half, upper));
+  }
   const VF origin = hn::Set(F{}, setup.depth.origin), dx = hn::Set(F{}, setup.depth.dx),
            dy = hn::Set(F{}, setup.depth.dy);
+  const VI from_left = hn::Set(I{}, window.x - setup.left);
   std::uint64_t passed = 0;
-  constexpr std::size_t kLanes = hn::MaxLanes(I{});
-  const std::size_t first = hwy::Num0BitsBelowLS1Bit_Nonzero64(window.covered) / kLanes * kLanes;
-  const std::size_t end = 64 - hwy::Num0BitsAboveMS1Bit_Nonzero64(window.covered);
-  for (std::size_t bit = first; bit < end; bit += kLanes) {
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    const std::size_t bit = block * kLanes, lane = bit % kRowLanes;
     const std::uint64_t covered = window.covered >> bit & (~std::uint64_t{0} >> (64 - kLanes));
-    const std::size_t lane = bit % kRowLanes;
-    const int row = static_cast<int>(bit / kRowLanes) * 2;
-    const VF x = hn::ConvertTo(
-        F{}, hn::Add(hn::Load(I{}, Window::kLaneX + lane), hn::Set(I{}, window.x - setup.left)));
-    const VF y = hn::ConvertTo(
-        F{}, hn::Add(hn::Load(I{}, Window::kLaneY + lane), hn::Set(I{}, window.y + row - setup.top)));
+    if (covered == 0) continue;
+    const int from_top = window.y + static_cast<int>(bit / kRowLanes) * 2 - setup.top;
+    const VF x = hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, Window::kLaneX + lane), from_left));
+    const VF y = hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, Window::kLaneY + lane), hn::Set(I{}, from_top)));
     const VF z = hn::Add(origin, hn::Add(hn::Mul(dx, x), hn::Mul(dy, y)));
     const auto depth = quantize(z, target.format);
-    std::uint32_t* upper = stored + static_cast<std::size_t>(row) * stride + lane / 2;
-    std::uint32_t* lower = upper + stride;
-    const auto old =
-        hn::TableLookupLanes(hn::Combine(U{}, hn::LoadU(half, lower), hn::LoadU(half, upper)), to_quads);
+    const auto quads = hn::TableLookupLanes(old[block], to_quads);
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(covered),
                                   static_cast<std::uint8_t>(covered >> 8)};
     auto pass = hn::LoadMaskBits(U{}, bits);
-    if (target.test) pass = hn::AndNot(hn::Gt(depth, old), pass);
+    if (target.test) pass = hn::AndNot(hn::Gt(depth, quads), pass);
     if (target.write) {
-      const auto rows = hn::TableLookupLanes(hn::IfThenElse(pass, depth, old), to_rows);
-      hn::StoreU(hn::LowerHalf(half, rows), half, upper);
-      hn::StoreU(hn::UpperHalf(half, rows), half, lower);
+      const auto rows = hn::TableLookupLanes(hn::IfThenElse(pass, depth, quads), to_rows);
+      hn::StoreU(hn::LowerHalf(half, rows), half, place_of(block));
+      hn::StoreU(hn::UpperHalf(half, rows), half, place_of(block) + stride);
     }
     std::uint8_t out[8] = {};
     hn::StoreMaskBits(U{}, pass, out);
@@ -235,11 +239,14 @@ BandCounts rasterize_band(const TriangleSetup& setup, const DepthTarget& depth, 
   const int width = static_cast<int>(depth.viewport.width), height = static_cast<int>(depth.viewport.height);
   BandCounts counts;
   for (int x = setup.left & ~1; x < setup.right; x += kWindow) {
-    Window window{x, y, cover(setup, x, y) & in_rectangle(setup, x, y), 0};
+    Window window{x, y, cover(setup, x, y), 0};
+    // What is inside of all edges lies within the rectangle, but for the frame's edges.
+    const bool in_frame = x + kWindow <= width && y + kWindow <= height;
+    if (!in_frame) window.covered &= in_rectangle(setup, x, y);
     if (window.covered == 0) continue;
     if (!depth.test && !depth.write) {
       window.passed = window.covered;
-    } else if (x + kWindow <= width && y + kWindow <= height) {
+    } else if (in_frame) {
       std::uint32_t* stored = depth.values.data() + static_cast<std::size_t>(y) * depth.viewport.width +
                               static_cast<std::size_t>(x);
       window.passed = test_depth(setup, depth, window, stored, depth.viewport.width);

@@ -7,8 +7,9 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "model/number/simd_integer-inl.h"
 
 namespace splatscope::texture {
 float wide_texel(const Texture& texture, std::size_t index);  // of any depth
@@ -29,19 +30,26 @@ HWY_INLINE void places(const float* coordinates, std::uint32_t size, std::size_t
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{})) {
     const auto scaled = hn::Mul(hn::LoadU(F{}, coordinates + i), texels);
     const auto clamped = hn::IfThenElseZero(hn::Gt(scaled, zero), hn::Min(scaled, last));
-    hn::StoreU(hn::ConvertTo(I{}, clamped), I{}, out + i);
+    hn::StoreU(splatscope::HWY_NAMESPACE::integer(clamped), I{}, out + i);
   }
 }
 
-constexpr std::array<float, 256> unorm8_values() {
-  std::array<float, 256> values{};
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i) / 255.0f;
-  return values;
-}
-constexpr std::array<float, 256> kUnorm8 = unorm8_values();
-
-HWY_INLINE float texel(const Texture& texture, std::size_t index) {
-  return texture.bits == 8 ? kUnorm8[texture.texels[index]] : wide_texel(texture, index);
+// The texels of `count` places as alpha.
+HWY_INLINE void look_up(const Texture& texture, const std::int32_t* x, const std::int32_t* y,
+                        std::size_t count, float* alpha) {
+  const auto index = [&](std::size_t i) {
+    return static_cast<std::size_t>(y[i]) * texture.width + static_cast<std::size_t>(x[i]);
+  };
+  if (texture.bits != 8) {
+    for (std::size_t i = 0; i < count; ++i) alpha[i] = wide_texel(texture, index(i));
+    return;
+  }
+  alignas(64) std::int32_t texels[kAtOnce];
+  for (std::size_t i = 0; i < count; ++i) texels[i] = texture.texels[index(i)];
+  alignas(64) float values[kAtOnce];
+  for (std::size_t i = 0; i < count; i += hn::Lanes(F{}))
+    hn::Store(hn::Div(hn::ConvertTo(F{}, hn::Load(I{}, texels + i)), hn::Set(F{}, 255.0f)), F{}, values + i);
+  std::copy_n(values, count, alpha);
 }
 
 void sample(const Texture& texture, const float* u, const float* v, std::span<float> alpha,
@@ -52,11 +60,10 @@ void sample(const Texture& texture, const float* u, const float* v, std::span<fl
     alignas(64) std::int32_t x[kAtOnce], y[kAtOnce];
     places(u + first, texture.width, count, x);
     places(v + first, texture.height, count, y);
-    for (std::size_t i = 0; i < count; ++i) {
+    look_up(texture, x, y, count, alpha.data() + first);
+    for (std::size_t i = 0; i < (blocks.empty() ? 0 : count); ++i) {
       const auto column = static_cast<std::uint32_t>(x[i]), row = static_cast<std::uint32_t>(y[i]);
-      alpha[first + i] = texel(texture, row * std::size_t{texture.width} + column);
-      if (!blocks.empty())
-        blocks[first + i] = (row / kTexelBlockEdge) * blocks_in_row + column / kTexelBlockEdge;
+      blocks[first + i] = (row / kTexelBlockEdge) * blocks_in_row + column / kTexelBlockEdge;
     }
   }
 }

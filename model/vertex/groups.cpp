@@ -3,8 +3,8 @@
 namespace splatscope::vertex {
 namespace {
 
-// The components of each source, after its swizzle, that a step reads at most.
-unsigned components_read(const Step& step) {
+// The same for all sources, after the swizzle.
+unsigned lanes_read(const Step& step) {
   switch (step.operation) {
     case Operation::move:
     case Operation::add:
@@ -38,7 +38,7 @@ class Planner {
     const bool grouped = can_be_grouped(step);
     if (!grouped)
       for (std::size_t i = 0; i < step.source_count; ++i)
-        spread_source(step.sources[i], swizzled(step.sources[i], components_read(step)));
+        spread_source(step.sources[i], components_read(step, step.sources[i]));
     planned_.push_back({step, grouped});
     if (step.destination_place == Place::temporary || step.destination_place == Place::output)
       held(step.destination_place, step.destination_index).write(step.mask, grouped);
@@ -64,13 +64,6 @@ class Planner {
     }
   };
 
-  static unsigned swizzled(const StepSource& source, unsigned lanes) {
-    unsigned components = 0;
-    for (std::size_t lane = 0; lane < 4; ++lane)
-      if ((lanes >> lane & 1u) != 0) components |= 1u << source.swizzle[lane];
-    return components;
-  }
-
   Held& held(Place place, std::size_t index) {
     return place == Place::temporary ? temporaries_[index]
            : place == Place::input   ? inputs_[index]
@@ -83,7 +76,7 @@ class Planner {
       const StepSource& source = step.sources[i];
       if (source.place == Place::constant) continue;
       if (source.place == Place::scratch) return false;
-      const unsigned needed = swizzled(source, components_read(step));
+      const unsigned needed = components_read(step, source);
       if ((needed & ~held(source.place, source.index).grouped) != 0) return false;
     }
     return true;
@@ -110,6 +103,14 @@ class Planner {
 };
 
 }  // namespace
+
+unsigned components_read(const Step& step, const StepSource& source) {
+  const unsigned lanes = lanes_read(step);
+  unsigned components = 0;
+  for (std::size_t lane = 0; lane < 4; ++lane)
+    if ((lanes >> lane & 1u) != 0) components |= 1u << source.swizzle[lane];
+  return components;
+}
 
 std::vector<PlannedStep> plan_groups(const std::vector<Step>& steps, unsigned grouped_inputs) {
   Planner planner(grouped_inputs);

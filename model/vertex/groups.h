@@ -11,6 +11,9 @@
 // then computed once, on one lane a group. Internal to model/vertex.
 namespace splatscope::vertex {
 
+// The components of a source, before its swizzle, that a step reads at most (bit 0: x).
+unsigned components_read(const Step& step, const StepSource& source);
+
 struct PlannedStep {
   Step step;
   bool grouped = false;  // on registers with a lane a group; else a lane a vertex

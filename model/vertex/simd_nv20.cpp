@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include "model/number/nv20.h"
+#include "model/number/simd_integer-inl.h"
 #include "model/vertex/steps.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -99,17 +100,6 @@ HWY_INLINE bool any_special(V value) {
   return !hn::AllTrue(U{}, hn::Lt(zero_is_normal, set(0x7f000000)));
 }
 
-// Toward zero. hn::ConvertTo would also saturate what does not fit.
-HWY_INLINE VI integer(VF value) {
-#if HWY_TARGET <= HWY_AVX3
-  return VI{_mm512_cvttps_epi32(value.raw)};
-#elif HWY_TARGET <= HWY_AVX2
-  return VI{_mm256_cvttps_epi32(value.raw)};
-#else
-  return VI{_mm_cvttps_epi32(value.raw)};
-#endif
-}
-
 // Toward zero; what is too large becomes the largest number and what is too small 0, both with their sign:
 // all of it the processor's mode. A zero factor gives +0 instead.
 HWY_INLINE V multiply(V a, V b) {
@@ -128,8 +118,9 @@ HWY_INLINE V sum(const VF (&terms)[kTerms], V& least) {
   least = hn::Min(least, hn::Sub(largest, set(1)));  // 0 is then the greatest number
   const V power = hn::And(hn::Max(largest, set(kSmallest)), set(0x7f800000));
   const VF scale = as_float(hn::Sub(set((127u + 28 + 127) << 23), power));
-  VI total = integer(hn::Mul(terms[0], scale));
-  for (std::size_t k = 1; k < kTerms; ++k) total = hn::Add(total, integer(hn::Mul(terms[k], scale)));
+  VI total = splatscope::HWY_NAMESPACE::integer(hn::Mul(terms[0], scale));
+  for (std::size_t k = 1; k < kTerms; ++k)
+    total = hn::Add(total, splatscope::HWY_NAMESPACE::integer(hn::Mul(terms[k], scale)));
   const VF unit = as_float(hn::Sub(power, set(28u << 23)));
   return hn::BitCast(U{}, hn::Mul(hn::ConvertTo(F{}, total), unit));
 }

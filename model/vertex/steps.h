@@ -81,7 +81,7 @@ struct Workspace {
   alignas(64) float temporaries[kTemporaries][4][kBatch];
   alignas(64) float scratch[4][kBatch];
   alignas(64) float broadcast[kConstants][4][kBroadcast];  // constants, once a SIMD lane
-  alignas(64) std::int32_t address[kBatch];
+  alignas(64) std::int32_t address[kBatch] = {};
   std::array<Vec4, kConstants> constants{};  // those that a draw does not give are 0
 };
 

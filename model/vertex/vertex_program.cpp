@@ -46,7 +46,8 @@ void VertexProgram::Decoded::use(const Step& step,
     const StepSource& source = step.sources[i];
     if (source.place == Place::constant) add_once(constants_read, source.index);
     if (source.place == Place::input) add_once(inputs_read, source.index);
-    if (source.place == Place::temporary && temporaries_written[source.index] != 0xf)
+    if (source.place == Place::temporary &&
+        (components_read(step, source) & ~unsigned{temporaries_written[source.index]}) != 0)
       add_once(temporaries_read_first, source.index);
   }
   const std::uint16_t destination = step.destination_index;
@@ -123,7 +124,7 @@ class VertexProgram::Execution {
   const Decoded& program_;
   Lanes each_;
   std::unique_ptr<Groups> groups_;
-  unsigned planned_for_ = 0;  // grouped inputs
+  unsigned planned_for_ = ~0u;  // grouped inputs; at first nothing is planned
   std::vector<PlannedStep> planned_;
   std::vector<Call> calls_;  // one a planned step
 };
@@ -136,7 +137,6 @@ VertexProgram::Execution::Execution(const Decoded& program, std::span<const Vec4
     for (std::size_t component = 0; component < 4; ++component)
       if (!(program.written[output] & (1u << component)))
         std::fill_n(out.o[output][component], kBatch, output == oD0 ? 1.0f : 0.0f);
-  plan(0);
 }
 
 void VertexProgram::Execution::set_constants(std::span<const Vec4> constants, Workspace& workspace) const {

@@ -12,7 +12,7 @@
 
 namespace splatscope::vertex {
 
-inline constexpr int kBatch = 64;  // vertices executed together
+inline constexpr int kBatch = 128;  // vertices executed together
 inline constexpr int kGroup = 4;   // successive vertices that may have inputs in common
 
 // Output registers in the order of this array: oPos, oD0, oD1, oT0..oT7, oFog (x), oPts (x).
