@@ -99,7 +99,7 @@ void run(const Options& options, bool quiet) {
   studies::write_run(input, machine, fidelity, result, options.out);
   print(input, machine, result);
   if (result.reference) print(studies::compare(result.rendered.frame, *result.reference));
-  std::cout << fmt::format("  frame.png, frame.exr, depth.exr and results.json in {}\n", options.out);
+  std::cout << fmt::format("  frame.png, frame.exr, depth.exr, results.json and report.html in {}\n", options.out);
   for (const std::string& line : observed) std::cout << "  " << line << '\n';
 }
 

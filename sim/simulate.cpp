@@ -41,6 +41,9 @@ Result run(SimulatedMachine& machine, const Trace& trace, const std::function<vo
       add_unit(result, machine, *domain->units()[place], domain->closed_books(place, result.cycles));
     }
   }
+  for (const auto& channel : machine.channels) {
+    result.channels.push_back({channel->producer().name(), channel->consumer().name(), channel->popped()});
+  }
   for (const Cycle end : machine.host->command_ends()) {
     result.command_ends.push_back(machine.core_cycle(end));
   }

@@ -37,6 +37,12 @@ struct UnitStatistic {
   std::uint64_t value = 0;
 };
 
+// A channel between two units, by their names, and the items that went through it.
+struct ChannelUse {
+  std::string from, to;
+  std::uint64_t items = 0;
+};
+
 struct Result {
   Cycle cycles = 0;  // of the core clock, from the first command to the last frame in memory
   double seconds = 0;
@@ -45,8 +51,9 @@ struct Result {
   std::vector<UnitBooks> units;
   std::vector<UnitStatistic> statistics;
   std::vector<UnitLeftOut> units_left_out;
-  std::vector<Cycle> command_ends;  // core cycle at which each command of the trace was done
-  std::vector<Cycle> frame_cycles;  // of each frame (`frame_ends`); they add up to `cycles`
+  std::vector<ChannelUse> channels;  // where events are simulated
+  std::vector<Cycle> command_ends;   // core cycle at which each command of the trace was done
+  std::vector<Cycle> frame_cycles;   // of each frame (`frame_ends`); they add up to `cycles`
 
   double seconds_of(Cycle some) const {
     return seconds * (static_cast<double>(some) / static_cast<double>(cycles));

@@ -34,6 +34,7 @@ std::string script_of(const Plot& plot) {
   if (plot.log_x) script += "set logscale x\n";
   if (plot.log_y) script += "set logscale y\n";
   std::string curves;
+  int color = 0;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Plot::Series& series = plot.series[i];
     script += fmt::format("$s{} << EOD\n", i);
@@ -43,9 +44,10 @@ std::string script_of(const Plot& plot) {
       }
     }
     script += "EOD\n";
-    curves +=
-        fmt::format("{}$s{} with {} title {}", i == 0 ? "plot " : ", ", i,
-                    series.joined ? "linespoints pt 7 ps 0.5" : "points pt 7 ps 0.5", quoted(series.name));
+    if (!series.with_last) ++color;
+    curves += fmt::format("{}$s{} with {} pt 7 ps {} lt {} title {}", i == 0 ? "plot " : ", ", i,
+                          series.joined ? "linespoints" : "points", series.with_last ? 1.5 : 0.5, color,
+                          quoted(series.name));
   }
   return script + (curves.empty() ? "plot" : curves) + "\n";
 }

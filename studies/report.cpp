@@ -2,41 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 
+#include "model/embedded_file.h"
 #include "model/error.h"
 #include "traces/output_files.h"
+
+namespace splatscope {
+std::span<const EmbeddedFile> report_files();  // made from report/ by studies/build.cmake
+}
 
 namespace splatscope::studies {
 namespace {
 
-constexpr std::string_view kStyle = R"css(
-:root { color-scheme: light dark; --ink: #1c2024; --dim: #60676f; --line: #d9dde1; --paper: #fff; --band: #f5f7f8; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #e6e8ea; --dim: #9aa2aa; --line: #3a4046; --paper: #16191c; --band: #1e2226; }
+std::string_view embedded(std::string_view name) {
+  return std::ranges::find(report_files(), name, &EmbeddedFile::name)->text;
 }
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2.5rem 1.25rem 4rem; max-width: 102rem; color: var(--ink); background: var(--paper);
-       font: 16px/1.55 system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
-h1 { margin: 0 0 .5rem; font-size: 1.9rem; line-height: 1.2; letter-spacing: -.01em; }
-h2 { margin: 2.5rem 0 .75rem; font-size: 1.25rem; }
-h1, p { max-width: 44rem; }
-p { margin: .75rem 0; }
-.lead { color: var(--dim); font-size: 1.05rem; }
-.caption { color: var(--dim); font-size: .92rem; margin-bottom: .25rem; }
-.table { overflow-x: auto; margin: 0 0 1rem; }
-table { border-collapse: collapse; font-size: .92rem; }
-th, td { padding: .4rem .9rem .4rem 0; text-align: left; white-space: nowrap; border-bottom: 1px solid var(--line); }
-th { border-bottom: 2px solid var(--ink); vertical-align: bottom; }
-tbody tr:hover { background: var(--band); }
-.number { text-align: right; font-variant-numeric: tabular-nums; }
-.pictures { display: flex; flex-wrap: wrap; gap: 1.5rem; margin: 1.25rem 0; }
-figure { margin: 0; max-width: 100%; }
-img { display: block; width: 100%; height: auto; }
-figcaption { margin-top: .5rem; font-size: .9rem; color: var(--dim); }
-.drawing { max-width: 45rem; margin: 1.25rem 0; }
-figcaption b { color: var(--ink); }
-)css";
+
+}  // namespace
 
 std::string escaped(std::string_view text) {
   std::string result;
@@ -62,6 +46,8 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
+namespace {
+
 // RFC 4648.
 std::string base64(std::span<const std::byte> bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -78,7 +64,21 @@ std::string base64(std::span<const std::byte> bytes) {
 }
 
 std::string_view attribute(Report::Align align) {
-  return align == Report::Align::number ? " class=\"number\"" : "";
+  return align == Report::Align::number  ? " class=\"number\""
+         : align == Report::Align::prose ? " class=\"prose\""
+                                         : "";
+}
+
+// A picture of its own size; only on a screen narrower than that it is scaled.
+std::string picture_figure(const Report::Picture& picture, std::string_view inside) {
+  return fmt::format("<figure style=\"width: {}px\">{}<figcaption><b>{}</b> {}</figcaption></figure>\n",
+                     picture.image.width, inside, escaped(picture.title), escaped(picture.caption));
+}
+
+std::string image_tag(const Report::Picture& picture, std::string_view attributes = "") {
+  return fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{}\" {}src=\"data:image/png;base64,{}\">",
+                     picture.image.width, picture.image.height, escaped(picture.title), attributes,
+                     base64(encode_png(picture.image)));
 }
 
 }  // namespace
@@ -97,8 +97,20 @@ void Report::paragraph(std::string_view text) {
 
 void Report::table(std::string_view caption, const std::vector<Column>& columns,
                    const std::vector<std::vector<std::string>>& rows) {
-  body_ +=
-      fmt::format("<p class=\"caption\">{}</p>\n<div class=\"table\"><table>\n<thead><tr>", escaped(caption));
+  body_ += fmt::format("<p class=\"caption\">{}</p>\n", escaped(caption));
+  add_table(columns, rows);
+}
+
+void Report::folded_table(std::string_view summary, const std::vector<Column>& columns,
+                          const std::vector<std::vector<std::string>>& rows) {
+  body_ += fmt::format("<details><summary>{}</summary>\n", escaped(summary));
+  add_table(columns, rows);
+  body_ += "</details>\n";
+}
+
+void Report::add_table(const std::vector<Column>& columns,
+                       const std::vector<std::vector<std::string>>& rows) {
+  body_ += "<div class=\"table\"><table>\n<thead><tr>";
   for (const Column& column : columns)
     body_ += fmt::format("<th scope=\"col\"{}>{}</th>", attribute(column.align), escaped(column.name));
   body_ += "</tr></thead>\n<tbody>\n";
@@ -114,12 +126,40 @@ void Report::table(std::string_view caption, const std::vector<Column>& columns,
 
 void Report::pictures(const std::vector<Picture>& pictures) {
   body_ += "<div class=\"pictures\">\n";
-  for (const Picture& p : pictures)
-    body_ += fmt::format(
-        "<figure style=\"width: {0}px\"><img width=\"{0}\" height=\"{1}\" alt=\"{2}\" "
-        "src=\"data:image/png;base64,{3}\"><figcaption><b>{2}</b> {4}</figcaption></figure>\n",
-        p.image.width, p.image.height, escaped(p.title), base64(encode_png(p.image)), escaped(p.caption));
+  for (const Picture& picture : pictures) {
+    body_ +=
+        picture_figure(picture, fmt::format("<button type=\"button\" class=\"magnify\" title=\"magnify\">{}"
+                                            "</button>",
+                                            image_tag(picture)));
+  }
   body_ += "</div>\n";
+}
+
+void Report::comparisons(const std::vector<Comparison>& comparisons) {
+  body_ += "<div class=\"pictures\">\n";
+  for (const Comparison& c : comparisons) {
+    const std::string name = fmt::format("comparison{}", ++comparisons_);
+    std::string inside = "<div class=\"comparison\"><div class=\"layers\">";
+    inside += image_tag({"reference", "", c.reference}, "class=\"under\" data-name=\"reference\" ");
+    inside += image_tag({"difference", "", c.difference}, "class=\"under\" data-name=\"difference\" hidden ");
+    inside += image_tag({"simulated", "", c.simulated.image}, "class=\"over\" ");
+    inside += fmt::format(
+        "</div><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"line between simulated "
+        "and what is right of it\"><div class=\"choice\"><span>left: simulated; right:</span><label><input "
+        "type=\"radio\" name=\"{0}\" value=\"reference\" checked> reference</label><label><input "
+        "type=\"radio\" "
+        "name=\"{0}\" value=\"difference\"> difference, 16 times</label></div></div>",
+        name);
+    body_ += picture_figure(c.simulated, inside);
+  }
+  body_ += "</div>\n";
+}
+
+void Report::diagram(std::string_view caption, std::string_view svg, const std::vector<LegendEntry>& legend) {
+  body_ += fmt::format("<figure class=\"machine\">{}<p class=\"legend\">", svg);
+  for (const LegendEntry& entry : legend)
+    body_ += fmt::format("<span><i class=\"{0}\"></i>{0}: {1}</span>", entry.name, escaped(entry.what));
+  body_ += fmt::format("</p><figcaption>{}</figcaption></figure>\n", escaped(caption));
 }
 
 void Report::drawing(std::string_view caption, std::string_view svg) {
@@ -134,8 +174,8 @@ std::string Report::html() const {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-      title_, kStyle, body_);
+      "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n{}<script>\n{}</script>\n</body>\n</html>\n",
+      title_, embedded("report.css"), body_, embedded("report.js"));
 }
 
 void Report::write(const std::filesystem::path& path) const {

@@ -9,8 +9,11 @@
 
 namespace splatscope::studies {
 
-// Builds one self-contained HTML page, from top to bottom: style and pictures are inside, nothing is loaded.
-// All texts are plain and are escaped here.
+// Text as HTML or SVG holds it.
+std::string escaped(std::string_view text);
+
+// Builds one self-contained HTML page, from top to bottom: style, script and pictures are inside, nothing is
+// loaded. All texts are plain and are escaped here.
 class Report {
  public:
   // `lead` stands under the title: what the page shows, in a sentence or two.
@@ -19,7 +22,7 @@ class Report {
   void heading(std::string_view text);
   void paragraph(std::string_view text);
 
-  enum class Align { text, number };
+  enum class Align { text, number, prose };  // prose is broken into lines
   struct Column {
     std::string name;
     Align align = Align::text;
@@ -27,6 +30,9 @@ class Report {
   // Each row has a cell for each column.
   void table(std::string_view caption, const std::vector<Column>& columns,
              const std::vector<std::vector<std::string>>& rows);
+  // The same, folded away until it is asked for.
+  void folded_table(std::string_view summary, const std::vector<Column>& columns,
+                    const std::vector<std::vector<std::string>>& rows);
 
   struct Picture {
     std::string title;
@@ -34,17 +40,35 @@ class Report {
     const Image& image;
   };
   // Side by side where the screen is wide enough, pixel for pixel: a scaled picture would hide or add
-  // aliasing. Only on a screen narrower than the picture it is scaled.
+  // aliasing. Only on a screen narrower than the picture it is scaled. Each opens magnified.
   void pictures(const std::vector<Picture>& pictures);
+
+  // A picture that a slider parts from its reference, or from their difference. All of one size.
+  struct Comparison {
+    Picture simulated;
+    const Image& reference;
+    const Image& difference;  // amplified 16 times about mid-grey (difference_picture)
+  };
+  void comparisons(const std::vector<Comparison>& comparisons);
 
   // A picture in SVG, drawn to scale.
   void drawing(std::string_view caption, std::string_view svg);
+
+  // A drawing that is part of the page and takes its colours from it. `svg` is HTML already. `name` is a
+  // class of the page's style.
+  struct LegendEntry {
+    std::string_view name, what;
+  };
+  void diagram(std::string_view caption, std::string_view svg, const std::vector<LegendEntry>& legend);
 
   std::string html() const;
   // The file appears whole or not at all. Throws UserError where the place cannot be written.
   void write(const std::filesystem::path& path) const;
 
  private:
+  void add_table(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows);
+
+  int comparisons_ = 0;
   std::string title_;  // escaped
   std::string body_;
 };

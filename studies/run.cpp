@@ -11,6 +11,8 @@
 #include "sim/fidelity/sampled.h"
 #include "sim/fidelity/throughput.h"
 #include "studies/reference_comparison.h"
+#include "studies/report/run_report.h"
+#include "studies/roofline.h"
 #include "studies/work_queue.h"
 #include "traces/output_files.h"
 #include "traces/trace_file.h"
@@ -77,18 +79,44 @@ Json left_out_json(const sim::Result& timing) {
   return out;
 }
 
-Json counters_json(const RenderCounters& c) {
-  return {{"vertices", c.vertices},
-          {"triangles", c.triangles},
-          {"triangles_without_coverage", c.triangles_without_coverage},
-          {"triangles_outside_frustum", c.triangles_outside},
-          {"triangles_behind_near", c.triangles_behind},
-          {"triangles_not_finite", c.triangles_not_finite},
-          {"triangles_back_facing", c.triangles_back_facing},
-          {"triangles_clipped", c.triangles_clipped},
-          {"quads", c.quads},
-          {"fragments", c.fragments},
-          {"fragments_passed", c.fragments_passed}};
+struct Total {
+  std::string_view name, unit, what;
+  std::uint64_t RenderCounters::*value;
+};
+constexpr Total kTotals[] = {
+    {"vertices", "vertices", "shaded", &RenderCounters::vertices},
+    {"triangles", "triangles", "as indexed", &RenderCounters::triangles},
+    {"triangles_without_coverage", "triangles", "that cover no pixel centre",
+     &RenderCounters::triangles_without_coverage},
+    {"triangles_outside_frustum", "triangles", "wholly outside one clip plane",
+     &RenderCounters::triangles_outside},
+    {"triangles_behind_near", "triangles", "before the near plane or behind the eye",
+     &RenderCounters::triangles_behind},
+    {"triangles_not_finite", "triangles", "with a NaN or an infinity in a position: dropped",
+     &RenderCounters::triangles_not_finite},
+    {"triangles_back_facing", "triangles", "dropped by the cull mode",
+     &RenderCounters::triangles_back_facing},
+    {"triangles_clipped", "triangles", "cut by a clip plane", &RenderCounters::triangles_clipped},
+    {"quads", "quads", "2x2 pixels with coverage", &RenderCounters::quads},
+    {"fragments", "pixels", "covered, each triangle by itself", &RenderCounters::fragments},
+    {"fragments_passed", "pixels", "of these, those that passed the depth test",
+     &RenderCounters::fragments_passed},
+};
+
+Json counters_json(const RenderCounters& counters) {
+  Json out;
+  for (const Total& total : kTotals) out[std::string(total.name)] = counters.*total.value;
+  return out;
+}
+
+// The counters as the statistics of the units stand there, with unit and meaning.
+Json totals_json(const RenderCounters& counters) {
+  Json out = Json::array();
+  for (const Total& total : kTotals) {
+    out.push_back(
+        {{"name", total.name}, {"value", counters.*total.value}, {"unit", total.unit}, {"what", total.what}});
+  }
+  return out;
 }
 
 Json statistics_json(const sim::Result& timing) {
@@ -292,7 +320,11 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   results["units"] = run.timing ? units_json(*run.timing) : Json::array();
   results["units_left_out"] = run.timing ? left_out_json(*run.timing) : Json::array();
   results["counters"] = counters_json(run.rendered.counters);
-  if (run.timing) results["statistics"] = statistics_json(*run.timing);
+  results["totals"] = totals_json(run.rendered.counters);
+  if (run.timing) {
+    results["statistics"] = statistics_json(*run.timing);
+    results["roofline"] = json_of(ceilings(machine, *run.timing));
+  }
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
   if (run.reference) results["reference"] = reference_json(run.rendered.frame, *run.reference);
@@ -312,6 +344,7 @@ OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& f
 
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder) {
+  const nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
   const Image picture = picture_of(run.rendered.frame);
   write_exr(picture, folder / "frame.exr");
   write_png(picture, folder / "frame.png");
@@ -322,7 +355,8 @@ void write_run(const Input& input, const Machine& machine, Fidelity fidelity, co
     write_png(reference, folder / "reference.png");
     write_png(difference_picture(run.rendered.frame, *run.reference), folder / "difference.png");
   }
-  traces::write_file(folder / "results.json", results_of(input, machine, fidelity, run).dump(1) + "\n");
+  run_report(input, machine, run, results).write(folder / "report.html");
+  traces::write_file(folder / "results.json", results.dump(1) + "\n");
 }
 
 }  // namespace splatscope::studies

@@ -89,7 +89,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
 // exists.
 OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder);
 
-// Writes frame.exr, frame.png and depth.exr of the last frame and results.json into `folder`, which exists;
+// Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html into `folder`, which exists;
 // where the run has a reference also reference.exr, reference.png and difference.png, and into the results
 // how far the last frame is from it.
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "model/error.h"
+#include "studies/report/configuration.h"
 #include "traces/output_files.h"
 
 namespace splatscope::studies {
@@ -28,14 +29,29 @@ void Findings::say(std::string_view text) {
   fmt::print("{}", text);
 }
 
+void Findings::write_picture(const std::string& name, const Image& image) const {
+  write_exr(image, folder_ / (name + ".exr"));
+  write_png(image, folder_ / (name + ".png"));
+}
+
 void Findings::pictures(const std::vector<Picture>& pictures) {
   std::vector<Report::Picture> shown;
   for (const Picture& picture : pictures) {
-    write_exr(picture.image, folder_ / (picture.name + ".exr"));
-    write_png(picture.image, folder_ / (picture.name + ".png"));
+    write_picture(picture.name, picture.image);
     shown.push_back({picture.name, picture.caption, picture.image});
   }
   report_.pictures(shown);
+}
+
+void Findings::compare(const std::vector<Comparison>& comparisons) {
+  std::vector<Report::Comparison> shown;
+  for (const Comparison& c : comparisons) {
+    write_picture(c.name, c.simulated);
+    write_picture("reference-" + c.name, c.reference);
+    write_picture("difference-" + c.name, c.difference);
+    shown.push_back({{c.name, c.caption, c.simulated}, c.reference, c.difference});
+  }
+  report_.comparisons(shown);
 }
 
 void Findings::plot(const std::string& name, const Plot& plot) {
@@ -46,6 +62,9 @@ void Findings::plot(const std::string& name, const Plot& plot) {
 
 void Findings::write(double host_seconds) {
   results_["host"] = {{"seconds", host_seconds}};
+  report_.heading("The machines");
+  for (const std::string_view name : machine::built_in_names())
+    add_configuration(report_, machine::load(name));
   report_.write(folder_ / "report.html");
   traces::write_file(folder_ / "results.json", results_.dump(1) + "\n");
   say(fmt::format("{:.1f} s; results.json, report.html and pictures in {}\n", host_seconds,

@@ -40,6 +40,15 @@ class Findings {
   };
   // Written as name.png and name.exr, and put into the report side by side.
   void pictures(const std::vector<Picture>& pictures);
+
+  struct Comparison {
+    std::string name, caption;
+    Image simulated, reference;
+    Image difference;  // as difference_picture makes it
+  };
+  // Written as name.png, reference-name.png, difference-name.png and the same as .exr, and put into the
+  // report with a slider between them.
+  void compare(const std::vector<Comparison>& comparisons);
   // Written as name.svg, and put into the report.
   void plot(const std::string& name, const Plot& plot);
 
@@ -47,6 +56,8 @@ class Findings {
   void write(double host_seconds);
 
  private:
+  void write_picture(const std::string& name, const Image& image) const;
+
   std::filesystem::path folder_;
   Report report_;
   nlohmann::ordered_json results_;

@@ -13,7 +13,10 @@ class ChannelState {
  public:
   virtual ~ChannelState() = default;
   virtual const std::string& name() const = 0;
-  virtual std::uint64_t items() const = 0;  // pushed and not popped yet
+  virtual const Unit& producer() const = 0;
+  virtual const Unit& consumer() const = 0;
+  virtual std::uint64_t items() const = 0;   // pushed and not popped yet
+  virtual std::uint64_t popped() const = 0;  // so far
   virtual std::string describe() const = 0;
 };
 
@@ -37,8 +40,8 @@ class Channel final : public ChannelState {
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
-  Unit& producer() const { return producer_; }
-  Unit& consumer() const { return consumer_; }
+  Unit& producer() const override { return producer_; }
+  Unit& consumer() const override { return consumer_; }
   bool empty() const { return head_ == tail_; }
 
   // Producer's side. The slot of the next push is the one that item tail_ - capacity_ had.
@@ -69,6 +72,7 @@ class Channel final : public ChannelState {
 
   const std::string& name() const override { return name_; }
   std::uint64_t items() const override { return tail_ - head_; }
+  std::uint64_t popped() const override { return head_; }
   std::string describe() const override {
     return name_ + " (" + producer_.name() + " to " + consumer_.name() + "): " + std::to_string(items()) +
            " of " + std::to_string(capacity_);

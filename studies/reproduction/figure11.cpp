@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "studies/reference_comparison.h"
 #include "studies/reproduction/reproduction.h"
 #include "studies/run.h"
 
@@ -12,18 +13,22 @@ void reproduce_figure11(Findings& findings, const Progress& progress) {
       {"ewa-per-surfel", "c) EWA, normalised per surfel"},
   };
   const Machine machine = machine::load("geforce4-ti4400");
-  std::vector<Findings::Picture> pictures;
+  // EWA in double precision, whatever the algorithm.
+  const kernels::ReferencePicture reference =
+      scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
+  std::vector<Findings::Comparison> pictures;
   for (const auto& [algorithm, caption] : kParts) {
     const double done = static_cast<double>(pictures.size()) / std::size(kParts);
     const auto scene = traces::load_scene(fmt::format("checkerboard-{}", algorithm));
     const Trace trace =
         traces::record(scene, machine.numbers, part(progress, done, done + 1.0 / std::size(kParts))).trace;
     const FrameRun run = run_frame(trace, machine, Fidelity::functional);
-    pictures.push_back(
-        {fmt::format("fig11-{}", algorithm), std::string(caption), picture_of(run.rendered.frame)});
+    const Frame& frame = run.rendered.frame;
+    pictures.push_back({fmt::format("fig11-{}", algorithm), std::string(caption), picture_of(frame),
+                        picture_of(reference), difference_picture(frame, reference)});
   }
   findings.report().heading("Fig. 11: the three algorithms");
-  findings.pictures(pictures);
+  findings.compare(pictures);
 }
 
 }  // namespace splatscope::studies

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "studies/picture_quality.h"
+#include "studies/reference_comparison.h"
 #include "studies/reproduction/reproduction.h"
 #include "studies/run.h"
 
@@ -32,7 +33,7 @@ std::vector<Shown> shown_models() {
 void reproduce_figure12(Findings& findings, const Progress& progress) {
   const Machine machine = machine::load("geforce4-ti4400");
   const std::vector<Shown> models = shown_models();
-  std::vector<Findings::Picture> pictures;
+  std::vector<Findings::Comparison> pictures;
   auto list = nlohmann::ordered_json::array();
   for (const auto& [model, what] : models) {
     const double done = static_cast<double>(pictures.size()), all = static_cast<double>(models.size());
@@ -44,7 +45,8 @@ void reproduce_figure12(Findings& findings, const Progress& progress) {
     const Comparison c = compare(run.rendered.frame, reference);
     pictures.push_back({"fig12-" + model.name,
                         fmt::format("{} ({}), {} surfels", model.name, what, scene.surfels.size()),
-                        picture_of(run.rendered.frame)});
+                        picture_of(run.rendered.frame), picture_of(reference),
+                        difference_picture(run.rendered.frame, reference)});
     findings.say(
         fmt::format("fig12 {:<11} {:<20} {:>7} surfels  {:>5.1f} dB  {:>5.1f} dB off edges  {:>2} holes\n",
                     model.name, what, scene.surfels.size(), c.psnr, c.psnr_off_edges, c.holes));
@@ -56,7 +58,7 @@ void reproduce_figure12(Findings& findings, const Progress& progress) {
                     {"holes", c.holes}});
   }
   findings.report().heading("Fig. 12: models with textures of high frequency");
-  findings.pictures(pictures);
+  findings.compare(pictures);
   findings.result("fig12", list);
 }
 

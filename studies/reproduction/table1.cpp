@@ -4,6 +4,7 @@
 
 #include "model/isa/program.h"
 #include "studies/reference_comparison.h"
+#include "studies/report/block_diagram.h"
 #include "studies/run.h"
 #include "traces/weight_capture.h"
 
@@ -96,6 +97,11 @@ void add_to(Report& report, const std::vector<Table1Row>& table) {
       "PSNR is against the double-precision sums of Eq. 8, normalised per pixel, over the pixels that the "
       "plane covers. The paper gives neither the camera nor the size of the squares: both are a "
       "reconstruction, as are the programs, of which it prints no listing.");
+  for (const Table1Row& row : table) {
+    if (row.algorithm != "ewa-per-surfel") continue;
+    report.heading(fmt::format("Inside the {}: {}", row.machine, row.algorithm));
+    add_machine(report, "Where the cycles of each unit went, and what went between the units.", row.timing);
+  }
 }
 
 std::string text_of(const std::vector<Table1Row>& table) {
@@ -149,7 +155,8 @@ std::vector<Table1Row> table1_rows(const Progress& progress) {
     count_slots(trace, row);
     row.bottleneck = run.timing->busiest().name;
     row.bottleneck_share = run.timing->share(run.timing->busiest().busy);
-    rows.push_back(row);
+    row.timing = *run.timing;
+    rows.push_back(std::move(row));
     ++done;
   }
   return rows;

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/simulate.h"
 #include "studies/study.h"
 
 // Table 1 of Ren, Pfister, Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines.
@@ -21,7 +22,8 @@ struct Table1Row {
   std::string bottleneck;  // the unit that was busy for the largest share of the frame
   double bottleneck_share = 0;
   double cycles_per_host_second = 0;
-  double psnr = 0;  // against the double-precision EWA reference, dB
+  double psnr = 0;     // against the double-precision EWA reference, dB
+  sim::Result timing;  // all of it
 
   double error() const { return simulated_fps / published_fps - 1; }
 };

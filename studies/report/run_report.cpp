@@ -1,0 +1,108 @@
+#include "studies/report/run_report.h"
+
+#include <fmt/format.h>
+
+#include "studies/reference_comparison.h"
+#include "studies/report/block_diagram.h"
+#include "studies/report/configuration.h"
+#include "studies/roofline.h"
+
+namespace splatscope::studies {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using enum Report::Align;
+
+// A count as people read it: 1 234 567.
+std::string grouped(std::uint64_t value) {
+  std::string digits = fmt::format("{}", value);
+  for (auto place = static_cast<std::ptrdiff_t>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), 1, ' ');
+  return digits;
+}
+
+void add_picture(Report& report, const FrameRun& run) {
+  const Image picture = picture_of(run.rendered.frame);
+  if (!run.reference) {
+    report.pictures({{"frame", "as the frame buffer holds it: no gamma is applied", picture}});
+    return;
+  }
+  const Comparison c = compare(run.rendered.frame, *run.reference);
+  report.comparisons({{{"frame",
+                        fmt::format("PSNR {:.1f} dB, {:.1f} dB off edges, at worst {:.0f}/255, {} holes",
+                                    c.psnr, c.psnr_off_edges, c.worst, c.holes),
+                        picture},
+                       picture_of(*run.reference),
+                       difference_picture(run.rendered.frame, *run.reference)}});
+}
+
+void add_times(Report& report, const sim::Result& timing) {
+  std::vector<std::vector<std::string>> rows;
+  for (const sim::Cycle cycles : timing.frame_cycles) {
+    const double seconds = timing.seconds_of(cycles);
+    rows.push_back({fmt::format("{}", rows.size() + 1), grouped(cycles),
+                    fmt::format("{:.3f}", 1000 * seconds), fmt::format("{:.2f}", 1 / seconds)});
+  }
+  const sim::UnitBooks& busiest = timing.busiest();
+  report.table(fmt::format("Time. {} was the busiest unit, {:.0f} % of the cycles.", busiest.name,
+                           100 * timing.share(busiest.busy)),
+               {{"frame", number}, {"core cycles", number}, {"ms", number}, {"frames/s", number}}, rows);
+}
+
+void add_roofline(Report& report, const Machine& machine, const sim::Result& timing) {
+  const std::vector<Ceiling> list = ceilings(machine, timing);
+  if (list.empty()) return;
+  report.heading("Roofline");
+  std::vector<std::vector<std::string>> rows;
+  for (const Ceiling& c : list) {
+    rows.push_back({c.name, c.what, fmt::format("{:.4g} {}", c.demand, c.unit),
+                    fmt::format("{:.4g} {}/s", c.peak, c.unit), fmt::format("{:.1f} %", 100 * c.share),
+                    c.demand == 0 ? "-" : fmt::format("{:.1f}", c.fps)});
+  }
+  report.table(
+      "What the run asked for, what the machine can give, and the frame rate if nothing else took time.",
+      {{"ceiling"},
+       {"what"},
+       {"asked for", number},
+       {"peak", number},
+       {"used", number},
+       {"frames/s", number}},
+      rows);
+  if (const auto plot = roofline_plot(list, timing.seconds)) report.drawing(plot->title, svg_of(*plot));
+}
+
+void add_counts(Report& report, const Json& results) {
+  report.heading("Counts");
+  const std::vector<Report::Column> columns = {
+      {"of"}, {"what", prose}, {"name"}, {"value", number}, {"unit"}};
+  std::vector<std::vector<std::string>> rows;
+  for (const char* list : {"totals", "statistics"}) {
+    if (!results.contains(list)) continue;
+    for (const Json& entry : results.at(list)) {
+      rows.push_back({entry.value("of", "the trace"), entry.at("what"), entry.at("name"),
+                      grouped(entry.at("value").get<std::uint64_t>()), entry.at("unit")});
+    }
+  }
+  report.folded_table(fmt::format("{} counts of the work and of the units", rows.size()), columns, rows);
+}
+
+}  // namespace
+
+Report run_report(const Input& input, const Machine& machine, const FrameRun& run, const Json& results) {
+  Report report(
+      fmt::format("splatscope: {}", input.name),
+      fmt::format("One run on {}, fidelity {}.", machine.title, results.at("fidelity").get<std::string>()));
+  add_picture(report, run);
+  if (run.timing) {
+    add_times(report, *run.timing);
+    add_roofline(report, machine, *run.timing);
+    report.heading("The machine");
+    add_machine(report, "Where the cycles of each unit went, and what went between the units.", *run.timing);
+  }
+  add_counts(report, results);
+  report.heading("Configuration");
+  add_configuration(report, machine);
+  return report;
+}
+
+}  // namespace splatscope::studies
