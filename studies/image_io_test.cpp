@@ -65,7 +65,6 @@ TEST_F(ImageFile, PngRoundsToEightBits) {
 TEST_F(ImageFile, FilesAppearWholeOrNotAtAll) {
   EXPECT_THROW(write_exr(ramp(), folder_ / "none" / "a.exr"), UserError);
   EXPECT_THROW(write_png(ramp(), folder_ / "none" / "a.png"), UserError);
-  EXPECT_ANY_THROW(write_exr(ramp(), folder_ / "a.no-such-format"));
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 

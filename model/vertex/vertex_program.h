@@ -13,7 +13,7 @@
 namespace splatscope::vertex {
 
 inline constexpr int kBatch = 128;  // vertices executed together
-inline constexpr int kGroup = 4;   // successive vertices that may have inputs in common
+inline constexpr int kGroup = 4;    // successive vertices that may have inputs in common
 
 // Output registers in the order of this array: oPos, oD0, oD1, oT0..oT7, oFog (x), oPts (x).
 enum Output : int { oPos = 0, oD0 = 1, oD1 = 2, oT0 = 3, oFog = 11, oPts = 12, kOutputs = 13 };
