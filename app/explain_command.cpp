@@ -45,7 +45,8 @@ void explain(const Options& options, bool quiet) {
   recording.clear();
   if (!options.pixel.empty()) {
     std::cout << studies::describe(
-        input.trace, studies::explain_pixel(input.trace, machine.numbers, pixel.first, pixel.second));
+        input.trace, machine.numbers,
+        studies::explain_pixel(input.trace, machine.numbers, pixel.first, pixel.second));
   }
   if (!options.vertex.empty())
     std::cout << studies::explain_vertex(input.trace, machine.numbers, vertex.first, vertex.second);

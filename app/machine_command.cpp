@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "model/machine/machine.h"
+#include "sim/unit_list.h"
 
 namespace splatscope::app {
 namespace {
@@ -32,6 +33,12 @@ void show_as_markdown(const Machine& machine) {
   }
 }
 
+// A line a statistic: unit, name, what is counted, what it is.
+void list_units(const Machine& machine) {
+  for (const sim::UnitStatistic& s : sim::declared_statistics(machine))
+    std::cout << fmt::format("{:<13} {:<17} {:<10} {}\n", s.unit_name, s.name, s.unit, s.what);
+}
+
 }  // namespace
 
 void add_machine_command(CLI::App& app) {
@@ -50,6 +57,11 @@ void add_machine_command(CLI::App& app) {
   const auto markdown = std::make_shared<bool>(false);
   one->add_flag("--markdown", *markdown, "as a table for the documentation");
   one->callback([name, markdown] { (*markdown ? show_as_markdown : show)(machine::load(*name)); });
+  CLI::App* units = machine->add_subcommand("units", "the units of a machine, and what each of them counts");
+  const auto of = std::make_shared<std::string>();
+  units->add_option("NAME", *of, "name of a machine, or a TOML file")->required();
+  units->footer("Example: splatscope machine units geforce4-ti4400");
+  units->callback([of] { list_units(machine::load(*of)); });
 }
 
 }  // namespace splatscope::app

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "model/error.h"
+#include "studies/own_program.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
 #include "studies/run_observers.h"
@@ -22,9 +23,11 @@ struct Options {
   std::string fidelity = "cycle";
   std::uint64_t seed = 1;
   std::vector<std::string> settings;
+  std::vector<std::string> programs;
   std::string out = "out";
   std::optional<std::string> reference;
   studies::ObserveOptions observe;
+  bool heat_maps = false;
 };
 
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
@@ -66,16 +69,22 @@ void print(const studies::Comparison& c) {
       c.psnr, c.surface_pixels, c.psnr_off_edges, c.pixels_off_edges, c.worst, c.holes, c.inside_pixels);
 }
 
+bool simulates_cycles(studies::Fidelity fidelity) {
+  return fidelity == studies::Fidelity::cycle || fidelity == studies::Fidelity::referee;
+}
+
 void run(const Options& options, bool quiet) {
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
-  if (!(options.observe.timeline + options.observe.counters).empty() &&
-      fidelity != studies::Fidelity::cycle && fidelity != studies::Fidelity::referee) {
+  if (!(options.observe.timeline + options.observe.pipeline + options.observe.counters).empty() &&
+      !simulates_cycles(fidelity)) {
     throw UserError(
         "--fidelity", 0,
         fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
   }
+  studies::window_of(options.observe.window, "--timeline-window");  // before anything is made
+  studies::window_of(options.observe.pipeline_window, "--pipeline-window");
   std::optional<kernels::ScreenMap> map;
   if (options.reference) map = studies::screen_map_by_name(*options.reference);
   ProgressBar loading("loading", quiet);
@@ -85,21 +94,29 @@ void run(const Options& options, bool quiet) {
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::screen_space_reference(studies::scene_of(opened, options.input), *map);
   ProgressBar recording("recording", quiet);
-  const studies::Input input =
-      studies::make_input(std::move(opened), options.input, machine, recording.callback());
+  studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
+  for (const std::string& program : options.programs) studies::replace_program(input.trace, program);
   studies::RunObservers observers(options.observe, input.trace);
+  std::optional<studies::HeatMaps> heat_maps;
+  std::vector<sim::Observer*> watching(observers.observers().begin(), observers.observers().end());
+  if (options.heat_maps) {
+    heat_maps.emplace(input.trace, simulates_cycles(fidelity));
+    if (heat_maps->observer()) watching.push_back(heat_maps->observer());
+  }
   ProgressBar running("running", quiet);
-  studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback(),
-                                                studies::earlier_frames_writer(input.trace, options.out),
-                                                {.seed = options.seed, .observers = observers.observers()});
+  studies::FrameRun result = studies::run_frame(
+      input.trace, machine, fidelity, running.callback(),
+      studies::earlier_frames_writer(input.trace, options.out),
+      {.seed = options.seed, .observers = watching, .heat_maps = heat_maps ? &*heat_maps : nullptr});
   running.clear();
   result.reference = std::move(reference);
   const std::vector<std::string> observed = observers.commit();
   studies::write_run(input, machine, fidelity, result, options.out);
   print(input, machine, result);
   if (result.reference) print(studies::compare(result.rendered.frame, *result.reference));
-  std::cout << fmt::format("  frame.png, frame.exr, depth.exr, results.json and report.html in {}\n", options.out);
+  std::cout << fmt::format("  frame.png, frame.exr, depth.exr, results.json and report.html in {}\n",
+                           options.out);
   for (const std::string& line : observed) std::cout << "  " << line << '\n';
 }
 
@@ -118,6 +135,11 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
       ->add_option("--set", options->settings,
                    "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
       ->allow_extra_args(false);
+  command
+      ->add_option("--program", options->programs,
+                   "NAME=FILE: a program of one's own in the place of the recorded one, as in "
+                   "splat_ewa.vs=mine.vs")
+      ->allow_extra_args(false);
   command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
       ->capture_default_str();
@@ -131,11 +153,18 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
   command->add_option("--timeline", options->observe.timeline,
                       "a file for Perfetto: what each unit did when, queues, memory");
   command->add_option("--timeline-window", options->observe.window, "FIRST:LAST: core cycles that it shows");
+  command->add_option("--pipeline", options->observe.pipeline,
+                      "a file for Konata: each instruction of the vertex units, when it waited and issued");
+  command->add_option("--pipeline-window", options->observe.pipeline_window,
+                      "FIRST:LAST: core cycles that it shows");
   command->add_option("--counters", options->observe.counters,
                       "a table (CSV) of shares, statistics and queues over time");
   command->add_option("--counters-every", options->observe.counters_every, "core cycles a row of it")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command->add_flag("--heat-maps", options->heat_maps,
+                    "also write where in the frame the work was: overdraw.exr, depth_fails.exr, "
+                    "texel_fetches.exr, cycles_per_tile.exr");
   command->footer(
       "Example: splatscope run checkerboard-ewa-per-surfel --set vertex.units=4 --out out/four-units");
   command->callback([options, &invocation] { run(*options, invocation.quiet); });

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <sstream>
 
 #include "model/error.h"
+#include "model/output/blend_factor.h"
 #include "model/render.h"
 #include "model/vertex/vertex_fetch.h"
 #include "studies/shader_debugger.h"
@@ -21,19 +24,22 @@ class PixelHistory {
       : trace_(trace), pixel_(std::size_t{y} * trace.width + x) {
     options_.formats = formats;
     options_.record_work = false;
-    exact_ = options_;
-    exact_.formats.frame = FrameFormat::float32;
-    probe_ = exact_;
+    probe_ = options_;
+    probe_.formats.frame = FrameFormat::float32;
     diffuse_program_ = add_program("ps_1_1\nmov r0, v0\n");
     texel_program_ = add_program("ps_1_1\ntex t0\nmov r0, t0\n");
   }
 
   void add(PixelStep step, Command command) {
+    if (!steps.empty()) {
+      step.before = steps.back().after;
+      step.before_in_double = steps.back().after_in_double;
+    }
+    step.after_in_double = in_double(step, command);
     done_.push_back(std::move(command));
     const Frame frame = render_view(trace_, done_, options_);
-    step.color = frame.color(pixel_);
+    step.after = frame.color(pixel_);
     step.depth = frame.depth_value(pixel_);
-    step.exact = render_view(trace_, done_, exact_).color(pixel_);
     steps.push_back(step);
   }
 
@@ -58,6 +64,21 @@ class PixelHistory {
     return static_cast<std::uint32_t>(trace_.programs.size() - 1);
   }
 
+  static PixelStep::Color in_double(const PixelStep& step, const Command& command) {
+    PixelStep::Color color = step.before_in_double;
+    if (const auto* clear = std::get_if<Clear>(&command)) std::ranges::copy(clear->color, color.begin());
+    if (const auto* draw = std::get_if<Draw>(&command); draw && step.passed && step.writes_color) {
+      PixelStep::Color source;
+      std::ranges::copy(step.source, source.begin());
+      color = output::blended(source, color, draw->state);
+    }
+    if (std::holds_alternative<NormalizeOnHost>(command) && color[3] > 0) {
+      for (std::size_t c = 0; c < 3; ++c) color[c] /= color[3];
+      color[3] = 1;
+    }
+    return color;
+  }
+
   // What `program` gives for the pixel, whatever is in the frame.
   Vec4 probe(Draw draw, std::optional<std::uint32_t> program) const {
     draw.pixel_program = program;
@@ -70,7 +91,7 @@ class PixelHistory {
 
   Trace trace_;
   std::size_t pixel_;
-  RenderOptions options_, exact_, probe_;
+  RenderOptions options_, probe_;
   std::uint32_t diffuse_program_ = 0, texel_program_ = 0;
   std::vector<Command> done_;
 };
@@ -94,6 +115,18 @@ void for_triangles_at(const DrawWork& work, std::uint32_t x, std::uint32_t y, Fo
 
 std::string text_of(const Vec4& color) {
   return fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", color[0], color[1], color[2], color[3]);
+}
+
+// What the frame holds: in 8 bits the numbers themselves.
+std::string stored_text(const Vec4& color, FrameFormat format) {
+  if (format != FrameFormat::unorm8) return text_of(color);
+  std::string text;
+  for (const float c : color) text += fmt::format("{}{:>3}", text.empty() ? "" : " ", std::lround(255 * c));
+  return text;
+}
+
+std::string double_text(const PixelStep::Color& color) {
+  return fmt::format("{:.8f} {:.8f} {:.8f} {:.8f}", color[0], color[1], color[2], color[3]);
 }
 
 nlohmann::ordered_json hex_of(const Vec4& value) {
@@ -146,7 +179,8 @@ std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& fo
   return std::move(history.steps);
 }
 
-std::string describe(const Trace& trace, const std::vector<PixelStep>& steps) {
+std::string describe(const Trace& trace, const NumberFormats& formats, const std::vector<PixelStep>& steps) {
+  const char* const stored = formats.frame == FrameFormat::unorm8 ? "in 8 bits, of 255" : "in the frame";
   std::string out;
   std::uint32_t command = ~std::uint32_t{0};
   for (const PixelStep& step : steps) {
@@ -167,8 +201,10 @@ std::string describe(const Trace& trace, const std::vector<PixelStep>& steps) {
       out += '\n';
     }
     if (!draw || step.passed) {
-      out += fmt::format("    frame   {}  in binary32 {}  depth {:.7f}\n", text_of(step.color),
-                         text_of(step.exact), step.depth);
+      out +=
+          fmt::format("    {}: {} before, {} after; depth {:.7f}\n    in double: {} before, {} after\n",
+                      stored, stored_text(step.before, formats.frame), stored_text(step.after, formats.frame),
+                      step.depth, double_text(step.before_in_double), double_text(step.after_in_double));
     }
   }
   return out;

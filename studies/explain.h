@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@ namespace splatscope::studies {
 
 // What a command did to a pixel.
 struct PixelStep {
+  using Color = std::array<double, 4>;
   enum class Kind : std::uint8_t { clear, triangle, normalize, present };
 
   Kind kind = Kind::triangle;
@@ -23,10 +25,11 @@ struct PixelStep {
   Vec4 diffuse{};  // as the pixel unit sees it
   Vec4 texel{};    // of the draw's texture, if it has one
   Vec4 source{};   // out of the pixel program
-  // After the step: of the frame in the machine's format, and as the same steps give it in binary32.
-  Vec4 color{};
-  Vec4 exact{};
-  double depth = 0;  // 0 (near) to 1
+  // Before and after the step: what the frame holds in the machine's format, and what it would hold if
+  // blending were exact (in double, and never clamped) on the same sources.
+  Vec4 before{}, after{};
+  Color before_in_double{}, after_in_double{};
+  double depth = 0;  // after it, 0 (near) to 1
 };
 
 // Every step that reached the pixel, in order. Triangles that do not cover it have none. Throws UserError
@@ -34,8 +37,8 @@ struct PixelStep {
 std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& formats, std::uint32_t x,
                                      std::uint32_t y);
 
-// The same as text, a line a step, and a heading for each command.
-std::string describe(const Trace& trace, const std::vector<PixelStep>& steps);
+// The same as text, a few lines a step, and a heading for each command.
+std::string describe(const Trace& trace, const NumberFormats& formats, const std::vector<PixelStep>& steps);
 
 // The vertex program of vertex `index` of the `draw`-th draw (both from 0; `index` as in the index buffer,
 // the draw's base vertex is added), instruction by instruction with what each reads and writes. Throws

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "studies/report/block_diagram.h"
 #include "studies/what_if.h"
 
 namespace splatscope::studies {
@@ -182,6 +183,12 @@ void study_exploration(Findings& findings, const Progress& progress) {
       program_rows(scene, kPrograms, Fidelity::cycle, kRandomSurfels, part(progress, 0, 0.5));
   findings.say(text_of(programs) + "\n");
   add_table(findings.report(), programs);
+  for (const ProgramRow* row : {&programs.front(), &programs.back()}) {
+    add_machine(
+        findings.report(),
+        fmt::format("The {} with the program \"{}\", {} slots", kBothMachines[0], row->name, row->slots),
+        row->timing);
+  }
   std::vector<WhatIfRow> rows;
   double done = 0.5;
   for (const std::string_view machine : kBothMachines) {

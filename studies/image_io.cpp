@@ -62,10 +62,10 @@ void write_exr(const Image& image, const fs::path& path) {
       path, encode(".exr", exr_spec(image.width, image.height, 4), image.pixels.data(), kPixelStride));
 }
 
-void write_exr(const GrayImage& image, const fs::path& path) {
+void write_exr(const GrayImage& image, const fs::path& path, const char* channel) {
   OIIO::ImageSpec spec = exr_spec(image.width, image.height, 1);
-  spec.channelnames = {"Z"};
-  spec.z_channel = 0;
+  spec.channelnames = {channel};
+  if (spec.channelnames[0] == "Z") spec.z_channel = 0;
   traces::write_file(path, encode(".exr", spec, image.pixels.data(), sizeof(float)));
 }
 

@@ -36,8 +36,9 @@ struct GrayImage {
 
 // Files appear whole or not at all. Throw UserError where the place cannot be written, std::runtime_error
 // where the library fails.
-void write_exr(const Image& image, const std::filesystem::path& path);      // binary32 RGBA
-void write_exr(const GrayImage& image, const std::filesystem::path& path);  // binary32, channel Z
+void write_exr(const Image& image, const std::filesystem::path& path);  // binary32 RGBA
+void write_exr(const GrayImage& image, const std::filesystem::path& path,
+               const char* channel = "Z");                              // binary32; Z: depth
 void write_png(const Image& image, const std::filesystem::path& path);  // 8-bit RGB: alpha holds no coverage
 
 // Bytes of a PNG file.

@@ -230,8 +230,11 @@ namespace {
 FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
                    const TimingOptions& timing) {
-  FrameRun run{render(trace, options, progress, on_frame), {}, 0, 0, {}};
-  if (!options.record_work) return run;
+  FrameRun run{render(trace, options, progress, on_frame), {}, 0, 0, {}, {}};
+  if (timing.heat_maps) {
+    for (const DrawWork& work : run.rendered.work) timing.heat_maps->add(work);
+  }
+  if (fidelity == Fidelity::functional) return run;
   const auto start = std::chrono::steady_clock::now();
   run.timing = time_frame(trace, run.rendered.work, machine, fidelity, timing);
   run.timing_seconds = seconds_since(start);
@@ -247,7 +250,10 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
   WorkQueue queue;
   std::future<Rendered> function = std::async(std::launch::async, [&] {
     try {
-      return render(trace, options, {}, on_frame, [&](DrawWork work) { queue.put(std::move(work)); });
+      return render(trace, options, {}, on_frame, [&](DrawWork work) {
+        if (timing.heat_maps) timing.heat_maps->add(work);
+        queue.put(std::move(work));
+      });
     } catch (...) {
       queue.fail(std::current_exception());
       throw;
@@ -262,7 +268,7 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
       trace, [&](std::size_t) -> const DrawWork& { return queue.next(); }, machine, scheduler, progress,
       timing.observers);
   const double seconds = seconds_since(start);
-  return {function.get(), std::move(result), 0, seconds, {}};
+  return {function.get(), std::move(result), 0, seconds, {}, {}};
 }
 
 }  // namespace
@@ -273,11 +279,12 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
-  options.record_work = fidelity != Fidelity::functional;
+  options.record_work = fidelity != Fidelity::functional || timing.heat_maps;
   FrameRun run = fidelity == Fidelity::cycle || fidelity == Fidelity::referee
                      ? run_beside(trace, machine, fidelity, options, progress, on_frame, timing)
                      : run_after(trace, machine, fidelity, options, progress, on_frame, timing);
   run.host_seconds = seconds_since(start);
+  if (timing.heat_maps) run.heat_maps = timing.heat_maps->maps();
   return run;
 }
 
@@ -325,6 +332,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
     results["statistics"] = statistics_json(*run.timing);
     results["roofline"] = json_of(ceilings(machine, *run.timing));
   }
+  if (!run.heat_maps.empty()) results["heat_maps"] = json_of(run.heat_maps);
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
   if (run.reference) results["reference"] = reference_json(run.rendered.frame, *run.reference);
@@ -355,6 +363,7 @@ void write_run(const Input& input, const Machine& machine, Fidelity fidelity, co
     write_png(reference, folder / "reference.png");
     write_png(difference_picture(run.rendered.frame, *run.reference), folder / "difference.png");
   }
+  for (const HeatMap& map : run.heat_maps) write_exr(map.image, folder / (map.name + ".exr"), "Y");
   run_report(input, machine, run, results).write(folder / "report.html");
   traces::write_file(folder / "results.json", results.dump(1) + "\n");
 }

@@ -12,6 +12,7 @@
 #include "model/machine/machine.h"
 #include "model/render.h"
 #include "sim/simulate.h"
+#include "studies/heat_maps.h"
 #include "studies/image_io.h"
 #include "studies/study.h"
 #include "traces/recorder.h"
@@ -55,12 +56,14 @@ struct FrameRun {
   std::optional<sim::Result> timing;                     // absent: functional
   double host_seconds = 0;                               // function and timing
   double timing_seconds = 0;                             // of these, for the timing
+  std::vector<HeatMap> heat_maps;                        // where they are asked for
   std::optional<kernels::ScreenSpacePicture> reference;  // what the frame should be, where it is asked for
 };
 
 struct TimingOptions {
   std::uint64_t seed = 1;                          // of the samples
   std::span<sim::Observer* const> observers = {};  // watch a run that is simulated (cycle, referee)
+  HeatMaps* heat_maps = nullptr;                   // given the work of each draw
 };
 
 // The time of a frame whose function gave `work`, by any fidelity but functional.
@@ -89,9 +92,9 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
 // exists.
 OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder);
 
-// Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html into `folder`, which exists;
-// where the run has a reference also reference.exr, reference.png and difference.png, and into the results
-// how far the last frame is from it.
+// Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html into `folder`,
+// which exists; where the run has a reference also reference.exr, reference.png and difference.png, and into
+// the results how far the last frame is from it; its heat maps as NAME.exr.
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder);
 

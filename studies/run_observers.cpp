@@ -22,15 +22,14 @@ bool parse_cycle(std::string_view text, sim::Cycle absent, sim::Cycle& cycle) {
 
 }  // namespace
 
-sim::Timeline::Window window_of(const std::string& text) {
-  sim::Timeline::Window window;
+CycleWindow window_of(const std::string& text, const char* option) {
+  CycleWindow window;
   const std::size_t colon = text.find(':');
   if (text.empty()) return window;
   const std::string_view view = text;
   if (colon == std::string::npos || !parse_cycle(view.substr(0, colon), 0, window.first) ||
       !parse_cycle(view.substr(colon + 1), sim::kNever, window.last) || window.first > window.last) {
-    throw UserError("--timeline-window", 0,
-                    fmt::format("\"{}\", expected FIRST:LAST, two core cycles", text));
+    throw UserError(option, 0, fmt::format("\"{}\", expected FIRST:LAST, two core cycles", text));
   }
   return window;
 }
@@ -56,8 +55,16 @@ T& RunObservers::add(const std::string& path, Arguments&&... arguments) {
 }
 
 RunObservers::RunObservers(const ObserveOptions& options, const Trace& trace) {
-  if (!options.timeline.empty())
-    timeline_ = &add<sim::Timeline>(options.timeline, trace, window_of(options.window));
+  if (!options.timeline.empty()) {
+    const CycleWindow window = window_of(options.window, "--timeline-window");
+    timeline_ = &add<sim::Timeline>(options.timeline, trace,
+                                    sim::Timeline::Window{.first = window.first, .last = window.last});
+  }
+  if (!options.pipeline.empty()) {
+    const CycleWindow window = window_of(options.pipeline_window, "--pipeline-window");
+    pipeline_ = &add<sim::PipelineLog>(options.pipeline, trace,
+                                       sim::PipelineLog::Window{.first = window.first, .last = window.last});
+  }
   if (!options.counters.empty()) add<sim::TimeSeries>(options.counters, options.counters_every);
 }
 
@@ -71,11 +78,13 @@ std::vector<std::string> RunObservers::commit() {
     file->file.commit();
     said.push_back(file->name);
   }
-  if (timeline_ && timeline_->cut_at() != sim::kNever) {
-    said.push_back(
-        fmt::format("the timeline is cut short at cycle {}: --timeline-window chooses what it shows",
-                    timeline_->cut_at()));
-  }
+  const auto say_where = [&](const auto* log, const char* what, const char* option) {
+    if (!log || log->cut_at() == sim::kNever) return;
+    said.push_back(fmt::format("the {} is cut short at cycle {}: {} chooses what it shows", what,
+                               log->cut_at(), option));
+  };
+  say_where(timeline_, "timeline", "--timeline-window");
+  say_where(pipeline_, "pipeline log", "--pipeline-window");
   return said;
 }
 

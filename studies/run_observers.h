@@ -7,6 +7,7 @@
 
 #include "model/command/commands.h"
 #include "sim/kernel/observer.h"
+#include "sim/observe/pipeline_log.h"
 #include "sim/observe/timeline.h"
 
 // Files that a run writes while it goes on, about what happens in the machine.
@@ -15,12 +16,18 @@ namespace splatscope::studies {
 struct ObserveOptions {
   std::string timeline;                   // file for Perfetto; empty: none
   std::string window;                     // of the timeline, core cycles: "FIRST:LAST"; empty: all
+  std::string pipeline;                   // file for Konata; empty: none
+  std::string pipeline_window;            // of it, as above
   std::string counters;                   // file for a table (CSV); empty: none
   std::uint64_t counters_every = 10'000;  // core cycles a row
 };
 
-// "1000:2000", "1000:", ":2000" or "". Throws UserError (file "--timeline-window") for anything else.
-sim::Timeline::Window window_of(const std::string& text);
+// "1000:2000", "1000:", ":2000" or "": the first and the last core cycle. Throws UserError (file `option`)
+// for anything else.
+struct CycleWindow {
+  sim::Cycle first = 0, last = sim::kNever;
+};
+CycleWindow window_of(const std::string& text, const char* option);
 
 class RunObservers {
  public:
@@ -42,6 +49,7 @@ class RunObservers {
   std::vector<std::unique_ptr<File>> files_;
   std::vector<sim::Observer*> observers_;
   const sim::Timeline* timeline_ = nullptr;
+  const sim::PipelineLog* pipeline_ = nullptr;
 };
 
 }  // namespace splatscope::studies

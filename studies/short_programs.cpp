@@ -95,11 +95,14 @@ std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const
                    .nv20 = kernels::splat_errors(splats, Arithmetic::nv20, 2003, surfels),
                    .psnr_paper = apart[i],
                    .psnr_paper_one_weight = apart_one[i],
-                   .psnr_reference = 0};
+                   .psnr_reference = 0,
+                   .timing = {}};
     for (const std::string_view name : kBothMachines) {
       const FrameRun run = drawings.at(name).by(names[i], fidelity);
       row.rates.push_back(rate_of(*run.timing));
-      if (name == kBothMachines[0]) row.psnr_reference = psnr(run.rendered.frame, reference);
+      if (name != kBothMachines[0]) continue;
+      row.psnr_reference = psnr(run.rendered.frame, reference);
+      row.timing = *run.timing;
     }
     rows.push_back(std::move(row));
     if (progress) progress(static_cast<double>(rows.size()) / static_cast<double>(names.size()));

@@ -31,6 +31,7 @@ struct ProgramRow {
   double psnr_paper = 0;             // dB, of the float picture against the paper program's; infinite: equal
   double psnr_paper_one_weight = 0;  // the same where the corners of a quad share one weight
   double psnr_reference = 0;         // dB, of the first machine's picture against the reference
+  sim::Result timing;                // on the first machine
 };
 
 // `scene` is drawn per surfel normalised by each of the named programs (the first is what

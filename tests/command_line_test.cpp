@@ -27,6 +27,7 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
                                                           {"scene", "keys"},
                                                           {"machine", "list"},
                                                           {"machine", "show"},
+                                                          {"machine", "units"},
                                                           {"shader", "check"},
                                                           {"shader", "count"},
                                                           {"shader", "assemble"},

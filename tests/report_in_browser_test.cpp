@@ -41,7 +41,8 @@ addEventListener("load", async () => {
   for (const opener of document.querySelectorAll(".magnify, .layers")) {
     opener.click();
     const shown = dialog.querySelector("img");
-    await new Promise((done) => setTimeout(done, 200));
+    await shown.decode();
+    await new Promise((done) => setTimeout(done));  // what the page waited for has run
     const width = shown.getBoundingClientRect().width;
     dialog.querySelector("[data-step='1']").click();
     const box = shown.getBoundingClientRect();

@@ -4,42 +4,13 @@
 #include <bit>
 
 #include "model/number/frame_value.h"
+#include "model/output/blend_factor.h"
 #include "model/output/simd_blend.h"
 
 namespace splatscope::output {
 namespace {
 
 constexpr double kHalfStep = 0.5;  // rounds to nearest: what does not blend is not dithered
-
-// The factor of one channel in a float frame buffer.
-float factor_of(BlendFactor factor, const Vec4& source, const Vec4& destination, std::size_t channel) {
-  switch (factor) {
-    case BlendFactor::zero:
-      return 0;
-    case BlendFactor::one:
-      return 1;
-    case BlendFactor::src_color:
-      return source[channel];
-    case BlendFactor::inv_src_color:
-      return 1 - source[channel];
-    case BlendFactor::src_alpha:
-      return source[3];
-    case BlendFactor::inv_src_alpha:
-      return 1 - source[3];
-    case BlendFactor::dst_alpha:
-      return destination[3];
-    case BlendFactor::inv_dst_alpha:
-      return 1 - destination[3];
-    case BlendFactor::dst_color:
-      return destination[channel];
-    case BlendFactor::inv_dst_color:
-      return 1 - destination[channel];
-    case BlendFactor::src_alpha_saturate:
-      return channel == 3 ? 1 : std::min(source[3], 1 - destination[3]);
-    default:  // no draw can name the factors of a constant colour
-      return 0;
-  }
-}
 
 }  // namespace
 
@@ -73,16 +44,6 @@ void clear(const Clear& command, Frame& frame) {
 
 namespace {
 
-Vec4 blended(const Vec4& color, const Vec4& destination, const DrawState& state) {
-  if (!state.blend) return color;
-  Vec4 out;
-  for (std::size_t c = 0; c < 4; ++c) {
-    out[c] = color[c] * factor_of(state.source_factor, color, destination, c) +
-             destination[c] * factor_of(state.destination_factor, color, destination, c);
-  }
-  return out;
-}
-
 double offset_at(std::uint32_t pixel, const DrawState& state, const Frame& frame) {
   if (!state.blend) return kHalfStep;
   return rounding_offset(frame.formats.frame_rounding, pixel % frame.width, pixel / frame.width);
@@ -101,7 +62,7 @@ void write_colors(const std::array<const float*, 4>& colors, std::span<const std
   if (formats.frame != FrameFormat::unorm8) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       Vec4& stored = frame.colors32[pixels[i]];
-      stored = blended({colors[0][i], colors[1][i], colors[2][i], colors[3][i]}, stored, state);
+      stored = blended<float>({colors[0][i], colors[1][i], colors[2][i], colors[3][i]}, stored, state);
       if (formats.frame == FrameFormat::float32) continue;
       const double offset = offset_at(pixels[i], state, frame);
       for (float& channel : stored) channel = stored_value(formats.frame, channel, offset);

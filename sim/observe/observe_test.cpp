@@ -77,6 +77,43 @@ TEST(Timeline, SlicesAddUpToTheBooks) {
   }
 }
 
+// The Trace Event Format (Google, "Trace Event Format", 2016): an object with `traceEvents`, whose events
+// have a phase, a process and what that phase needs. Perfetto also wants the slices of a track not to
+// overlap.
+TEST(Timeline, IsATraceEventFile) {
+  const Json file = Json::parse(observe(7, {}).timeline);
+  ASSERT_TRUE(file.is_object());
+  EXPECT_TRUE(file.at("displayTimeUnit") == "ms" || file.at("displayTimeUnit") == "ns");
+  std::map<std::string, std::size_t> phases;
+  std::map<int, Cycle> ends;  // of the last slice of each track
+  for (const Json& event : file.at("traceEvents")) {
+    const std::string phase = event.at("ph");
+    ++phases[phase];
+    EXPECT_TRUE(event.at("name").is_string());
+    EXPECT_TRUE(event.at("pid").is_number_integer());
+    if (phase == "M") {
+      const std::string& name = event.at("name").get_ref<const std::string&>();
+      const Json& value = event.at("args").at(name == "thread_sort_index" ? "sort_index" : "name");
+      EXPECT_TRUE(name == "thread_sort_index" ? value.is_number_integer() : value.is_string()) << event;
+      EXPECT_TRUE(name == "process_name" || event.at("tid").is_number_integer());
+    } else if (phase == "X") {
+      EXPECT_TRUE(event.at("ts").is_number_unsigned());
+      EXPECT_GT(event.at("dur").get<Cycle>(), 0u);
+      Cycle& end = ends[event.at("tid").get<int>()];
+      EXPECT_GE(event.at("ts").get<Cycle>(), end) << event;
+      end = event.at("ts").get<Cycle>() + event.at("dur").get<Cycle>();
+    } else {
+      ASSERT_EQ("C", phase) << event;
+      EXPECT_TRUE(event.at("ts").is_number_unsigned());
+      ASSERT_EQ(1u, event.at("args").size());
+      EXPECT_TRUE(event.at("args").begin()->is_number());
+    }
+  }
+  EXPECT_GT(phases["M"], 10u);
+  EXPECT_GT(phases["X"], 10u);
+  EXPECT_GT(phases["C"], 10u);
+}
+
 TEST(Timeline, ShowsTheWindowAlone) {
   const Observed all = observe(7, {});
   const Cycle first = all.result.cycles / 4, last = all.result.cycles / 2;

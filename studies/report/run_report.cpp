@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "studies/reference_comparison.h"
 #include "studies/report/block_diagram.h"
 #include "studies/report/configuration.h"
@@ -86,6 +88,23 @@ void add_counts(Report& report, const Json& results) {
   report.folded_table(fmt::format("{} counts of the work and of the units", rows.size()), columns, rows);
 }
 
+void add_heat_maps(Report& report, const std::vector<HeatMap>& maps) {
+  if (maps.empty()) return;
+  report.heading("Heat maps");
+  std::vector<Image> images;
+  std::vector<Report::Picture> pictures;
+  images.reserve(maps.size());  // pictures refer to them
+  for (const HeatMap& map : maps) {
+    images.push_back(colored(map));
+    const float most = *std::ranges::max_element(map.image.pixels);
+    pictures.push_back({map.name,
+                        fmt::format("{}: {} {}, at most {:.0f}; black is 0, colours go by its logarithm",
+                                    map.what, grouped(map.sum), map.unit, most),
+                        images.back()});
+  }
+  report.pictures(pictures);
+}
+
 }  // namespace
 
 Report run_report(const Input& input, const Machine& machine, const FrameRun& run, const Json& results) {
@@ -99,6 +118,7 @@ Report run_report(const Input& input, const Machine& machine, const FrameRun& ru
     report.heading("The machine");
     add_machine(report, "Where the cycles of each unit went, and what went between the units.", *run.timing);
   }
+  add_heat_maps(report, run.heat_maps);
   add_counts(report, results);
   report.heading("Configuration");
   add_configuration(report, machine);

@@ -27,6 +27,7 @@ int Rasteriser::send(Cycle now) {
       if (!out_->can_push(now)) break;
       out_->push(now, next_quad_);
     }
+    if (on_quad_) on_quad_(now, job().work->quads[next_quad_]);
     ++next_quad_;
     --quads_left_;
   }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <utility>
+
 #include "model/machine/machine.h"
 #include "sim/kernel/channel.h"
 #include "sim/units/draw_unit.h"
@@ -14,6 +17,9 @@ class Rasteriser final : public DrawUnit {
   Rasteriser(std::string name, Completion& completion, const Machine::Raster& spec, int quads_per_clock);
   // The depth test takes all quads; past it only coloured ones go out.
   void connect(Channel<std::uint32_t>& in, const QuadTargets& out);
+
+  // `on_quad` is told each quad in the cycle in which it is done; empty: nobody.
+  void on_quad(std::function<void(Cycle, const QuadWork&)> on_quad) { on_quad_ = std::move(on_quad); }
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
@@ -33,6 +39,7 @@ class Rasteriser final : public DrawUnit {
   std::uint32_t triangle_ = 0;
   std::uint32_t next_quad_ = 0;                    // of the draw
   std::uint32_t quads_left_ = 0, tiles_left_ = 0;  // of the triangle
+  std::function<void(Cycle, const QuadWork&)> on_quad_;
   std::uint64_t quads_ = 0, tiles_ = 0, empty_ = 0;
 };
 

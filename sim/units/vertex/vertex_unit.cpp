@@ -32,7 +32,10 @@ std::uint64_t VertexUnit::start(const DrawJob& job) {
 // What the logic issues in the cycles up to and with this one.
 void VertexUnit::issue_up_to(Cycle now) {
   if (is_referee()) {
-    if (const auto issued = logics_[program_].issue(); issued && issued->is_last) end(*issued, now);
+    if (const auto issued = logics_[program_].issue()) {
+      if (watcher_) show(*issued, now);
+      if (issued->is_last) end(*issued, now);
+    }
     coming_ = now + 1;
     return;
   }
@@ -40,9 +43,26 @@ void VertexUnit::issue_up_to(Cycle now) {
   for (;;) {
     const IssueReplay::NextEnd next = replay.next_end();
     if (next.cycles == kNever || coming_ + next.cycles > now + 1) return;
+    if (watcher_) show_coming(next.cycles);
     coming_ += next.cycles;
     replay.pass_next_end();
     end(next.issued, coming_ - 1);
+  }
+}
+
+void VertexUnit::show(const Issued& issued, Cycle at) {
+  const IssueSlot& slot = programs_[program_][issued.slot];
+  const int latency =
+      std::max(slot.has_vector ? spec_.vector_latency : 0, slot.has_scalar ? spec_.scalar_latency : 0);
+  watcher_->issued(*this, at, of_threads_[static_cast<std::size_t>(issued.thread)], slot,
+                   at + static_cast<Cycle>(latency));
+}
+
+// What the replay is about to go past, issued once more to be seen.
+void VertexUnit::show_coming(Cycle cycles) {
+  IssueLogic going = logic();
+  for (Cycle i = 0; i < cycles && going.held() != 0 && watcher_; ++i) {
+    if (const auto issued = going.issue()) show(*issued, coming_ + i);
   }
 }
 
@@ -87,10 +107,12 @@ bool VertexUnit::take(Cycle now) {
   if (is_referee()) {
     thread = logics_[program_].take();
   } else {
+    if (watcher_) show_coming(now + 1 - coming_);
     replays_[program_].pass(now + 1 - coming_);
     thread = replays_[program_].take();
     coming_ = now + 1;
   }
+  if (watcher_) watcher_->taken(*this, now, taken_, number);
   of_threads_[static_cast<std::size_t>(thread)] = taken_++;
   vertices_.push_back({number, kNever});
   slots_ += programs_[program_].size();

@@ -14,6 +14,22 @@ namespace splatscope::sim {
 using VertexNumber = std::uint32_t;
 inline constexpr VertexNumber kEndOfDraw = ~VertexNumber{0};  // to a vertex unit: no more of this draw
 
+class VertexUnit;
+
+// Is told what vertex units issue, instruction by instruction, and changes nothing of it. `vertex`: how many
+// the unit had taken before it.
+class IssueWatcher {
+ public:
+  virtual ~IssueWatcher() = default;
+  // In the order of the cycles, over all units. `number`: among the shaded vertices of the draw.
+  virtual void taken(const VertexUnit& unit, Cycle now, std::uint64_t vertex, VertexNumber number) = 0;
+  // In the order of the cycles for each unit, and before anything of a later cycle is known of the vertex;
+  // told when the unit is next called, so other units may be ahead. `result`: the cycle in which the results
+  // can be read.
+  virtual void issued(const VertexUnit& unit, Cycle at, std::uint64_t vertex, const IssueSlot& slot,
+                      Cycle result) = 0;
+};
+
 // One programmable vertex unit. Takes at most one vertex a cycle, whose first slot can issue in the next
 // cycle, and passes the results on in the order in which it took the vertices, at most one a cycle. For each
 // thread it has room for the result of one vertex that has ended.
@@ -29,6 +45,10 @@ class VertexUnit final : public DrawUnit {
   // Vertices that a unit holds at most, from taking to passing on.
   static int most_vertices(const Machine::Vertex& spec) { return 2 * spec.threads; }
 
+  // `watcher` outlives the unit or is taken away again (null).
+  void watch(IssueWatcher* watcher) { watcher_ = watcher; }
+  const DrawJob& drawing() const { return job(); }
+
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
   std::string state() const override;
@@ -43,6 +63,8 @@ class VertexUnit final : public DrawUnit {
   bool is_referee() const { return domain().scheduler() == Scheduler::referee; }
   const IssueLogic& logic() const { return is_referee() ? logics_[program_] : replays_[program_].logic(); }
   void issue_up_to(Cycle now);
+  void show(const Issued& issued, Cycle at);
+  void show_coming(Cycle cycles);
   void end(const Issued& last, Cycle at);
   bool retire(Cycle now);
   bool take(Cycle now);
@@ -61,6 +83,7 @@ class VertexUnit final : public DrawUnit {
   Cycle reloaded_at_ = 0;                  // when all threads without a vertex are reloaded
   std::vector<std::uint64_t> of_threads_;  // the vertex that each thread took, counted as taken_
   std::deque<Vertex> vertices_;
+  IssueWatcher* watcher_ = nullptr;
   std::uint64_t taken_ = 0, slots_ = 0;
 };
 
