@@ -83,8 +83,7 @@ void run(const Options& options, bool quiet) {
         "--fidelity", 0,
         fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
   }
-  studies::window_of(options.observe.window, "--timeline-window");  // before anything is made
-  studies::window_of(options.observe.pipeline_window, "--pipeline-window");
+  studies::check(options.observe);
   std::optional<kernels::ScreenMap> map;
   if (options.reference) map = studies::screen_map_by_name(*options.reference);
   ProgressBar loading("loading", quiet);

@@ -20,7 +20,8 @@ std::string written(const char* name, const std::string& text) {
 
 TEST(OwnProgram, TakesThePlaceOfTheRecordedOne) {
   const traces::Scene scene = traces::parse_scene(
-      "surfels = { columns = 8, rows = 8 }\nframe = { width = 16, height = 16 }\ncapture.views = 1\n",
+      "surfels = { columns = 8, rows = 8 }\nframe = { width = 16, height = 16 }\ncapture.views = 1\n"
+      "camera = { eye = [0, 5, 5], target = [0, 0, 0] }\n",
       "s.toml");
   Trace trace = traces::record(scene, NumberFormats{}).trace;
   const Frame before = render(trace, {}).frame;

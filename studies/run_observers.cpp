@@ -34,6 +34,13 @@ CycleWindow window_of(const std::string& text, const char* option) {
   return window;
 }
 
+void check(const ObserveOptions& options) {
+  window_of(options.window, "--timeline-window");
+  window_of(options.pipeline_window, "--pipeline-window");
+  for (const std::string* path : {&options.timeline, &options.pipeline, &options.counters})
+    if (!path->empty()) const traces::OutputFile probe(*path);
+}
+
 struct RunObservers::File {
   explicit File(const std::string& path) : name(path), file(path), out(file.temporary(), std::ios::binary) {
     if (!out) throw UserError(path, 0, "cannot be written, expected a file in a writable folder");

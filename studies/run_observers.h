@@ -29,6 +29,10 @@ struct CycleWindow {
 };
 CycleWindow window_of(const std::string& text, const char* option);
 
+// Throws UserError where a window is wrong or a file cannot be made: what RunObservers would say only once
+// there is a trace.
+void check(const ObserveOptions& options);
+
 class RunObservers {
  public:
   // Of a run of `trace`, which outlives them. Throws UserError where a window is wrong or a file cannot be

@@ -69,27 +69,26 @@ WorkStream compute(const Trace& trace, const RenderOptions& options) {
 }
 
 // From the cache where there is one that holds it.
-WorkStream work_of(const Trace& trace, const Machine& machine,
-                   const std::optional<std::filesystem::path>& folder, Sweep& sweep) {
+WorkStream work_of(const Trace& trace, const Machine& machine, const std::optional<WorkCache>& cache,
+                   Sweep& sweep) {
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
-  if (!folder) {
+  if (!cache) {
     ++sweep.functions;
     return compute(trace, options);
   }
-  const WorkCache cache(*folder);
   const std::string key = work_key(trace, options);
   WorkStream stream;
-  const WorkCache::Found found = cache.read(key, stream);
+  const WorkCache::Found found = cache->read(key, stream);
   if (found == WorkCache::Found::yes) {
     ++sweep.from_cache;
     return stream;
   }
-  if (found == WorkCache::Found::damaged) sweep.damaged.push_back(cache.path_of(key));
+  if (found == WorkCache::Found::damaged) sweep.damaged.push_back(cache->path_of(key));
   ++sweep.functions;
   stream = compute(trace, options);
-  cache.write(key, stream);
+  cache->write(key, stream);
   return stream;
 }
 
@@ -114,7 +113,7 @@ SweptParameter swept_parameter(std::string_view text) {
 
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
-                const std::optional<std::filesystem::path>& cache, const Progress& progress,
+                const std::optional<std::filesystem::path>& cache_folder, const Progress& progress,
                 const std::function<void()>& before_work) {
   const auto start = std::chrono::steady_clock::now();
   if (fidelity == Fidelity::functional)
@@ -124,6 +123,8 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
   sweep.points = combine(parameters);
   const std::vector<Group> groups = group(machine, sweep.points);
   const auto opened = open_input(scene_or_trace);
+  std::optional<WorkCache> cache;
+  if (cache_folder) cache.emplace(*cache_folder);
   if (before_work) before_work();
   std::size_t done = 0;
   for (const Group& same : groups) {
