@@ -18,6 +18,7 @@ struct DrawBindings {
   const Buffer& vertices;
   const Buffer& indices;
   const Texture* texture;
+  const Frame* source;  // surface that is sampled in place of a texture, or null
   const vertex::VertexProgram& vertex;
   const pixel::PixelProgram* pixel;
   std::span<const primitive::UsedAttribute> attributes;  // that the pixel program reads

@@ -27,7 +27,7 @@ FragmentPipe::FragmentPipe(const DrawBindings& bindings, const Frame& frame, Dra
       formats_(frame.formats),
       work_(work),
       write_(std::move(write)),
-      samples_(bindings.texture != nullptr && bindings.pixel != nullptr &&
+      samples_((bindings.texture != nullptr || bindings.source != nullptr) && bindings.pixel != nullptr &&
                (bindings.pixel->texture_stages() & 1u) != 0) {
   attributes_[primitive::kDiffuse] = &batch_.v0;
   attributes_[primitive::kSpecular] = &batch_.v1;
@@ -102,6 +102,13 @@ void FragmentPipe::note_blocks(std::span<const std::uint32_t> blocks) {
 // D3DFMT_A8 has no colour: the other components of t0 stay 0.
 void FragmentPipe::sample(std::size_t count) {
   std::array<std::uint32_t, kCapacity> blocks;
+  if (bindings_.source != nullptr) {
+    auto& t0 = batch_.t[0];
+    texture::sample_surface(*bindings_.source, coordinates_[0], coordinates_[1], {t0[0], t0[1], t0[2], t0[3]},
+                            std::span(blocks).first(count));
+    if (work_ != nullptr) note_blocks(std::span(blocks).first(count));
+    return;
+  }
   const auto noted = std::span(blocks).first(work_ != nullptr ? count : 0);
   const std::span<float> alpha(batch_.t[0][3], count);
   texture::sample_nearest(*bindings_.texture, coordinates_[0], coordinates_[1], alpha, noted);

@@ -92,6 +92,7 @@ class Renderer {
         commands_(commands),
         options_(options),
         rendered_(rendered),
+        surfaces_(trace.surfaces, Frame(trace.width, trace.height, options.formats)),
         programs_(trace, options.formats),
         indices_(options.vertex_cache_entries) {
     output::clear(Clear{}, rendered.frame);
@@ -112,12 +113,14 @@ class Renderer {
                                 trace_.buffers[draw.vertex_buffer],
                                 trace_.buffers[draw.index_buffer],
                                 draw.texture ? &trace_.textures[*draw.texture] : nullptr,
+                                draw.source ? &surfaces_[*draw.source - 1] : nullptr,
                                 programs_.vertex(draw.vertex_program),
                                 pixel ? &pixel->program : nullptr,
                                 attributes_read(draw, pixel)};
     DrawWork work;
     work.command = static_cast<std::uint32_t>(command);
-    render_draw(bindings, options_, indices_, rendered_.frame, work, rendered_.counters);
+    Frame& target = draw.target == 0 ? rendered_.frame : surfaces_[draw.target - 1];
+    render_draw(bindings, options_, indices_, target, work, rendered_.counters);
     if (options_.record_work) rendered_.work.push_back(std::move(work));
   }
 
@@ -131,6 +134,7 @@ class Renderer {
   std::span<const Command> commands_;
   const RenderOptions& options_;
   Rendered& rendered_;
+  std::vector<Frame> surfaces_;  // off-screen
   Programs programs_;
   Indices indices_;
 };

@@ -207,5 +207,49 @@ TEST(Render, NanDoesNotReachAFloatFrameBuffer) {
   }
 }
 
+// A quarter of a surface is painted twice and composited over a grey frame: render to texture.
+TEST(Render, SurfacesAreDrawnIntoAndSampled) {
+  Trace trace;
+  trace.width = trace.height = 8;
+  trace.surfaces = 1;
+  // Clip coordinates 1/8 to the upper left: pixels begin at the window's integers.
+  trace.buffers = {buffer_of(std::array<float, 12>{-1.125f, 1.125f, 0, 0.875f, 1.125f, 0, -1.125f, -0.875f, 0,
+                                                   0.875f, -0.875f, 0}),
+                   buffer_of(std::array<std::uint16_t, 6>{0, 1, 2, 2, 1, 3})};
+  trace.programs = {{"paint.vs", "vs_1_1\nmov oPos, v0\nmov oD0, c0\n"},
+                    {"copy.vs", "vs_1_1\nmov oPos, v0\nmul r0, v0, c1\nadd oT0, r0, c2\n"},
+                    {"copy.ps", "ps_1_1\ntex t0\nmov r0, t0\n"}};
+  Draw paint;
+  paint.target = 1;
+  paint.vertex_stride = 12;
+  paint.attributes = {{0, VertexFormat::float3, 0}};
+  paint.index_buffer = 1;
+  paint.index_count = 3;  // the upper left half
+  paint.constants = {{0.2f, 0, 0, 0.4f}};
+  paint.state = {.depth_test = false, .depth_write = false, .blend = true};
+  paint.state.source_factor = paint.state.destination_factor = BlendFactor::one;
+  Draw copy = paint;
+  copy.target = 0;
+  copy.source = 1;
+  copy.vertex_program = 1;
+  copy.pixel_program = 2;
+  copy.index_count = 6;
+  copy.constants = {{}, {0.5f, -0.5f, 0, 0}, {0.5625f, 0.5625f, 0, 0}};
+  copy.state.destination_factor = BlendFactor::inv_src_alpha;
+  trace.commands = {Clear{{0.5f, 0.5f, 0.5f, 1}, 1}, paint, paint, copy};
+  for (const FrameFormat format : {FrameFormat::unorm8, FrameFormat::float32}) {
+    RenderOptions options;
+    options.formats.frame = format;
+    const Frame frame = render(trace, options).frame;
+    const double tolerance = format == FrameFormat::unorm8 ? 1.5 / 255 : 1e-6;
+    for (std::size_t pixel = 0; pixel < 64; ++pixel) {
+      const bool painted = pixel / 8 + pixel % 8 < 7;
+      if (pixel / 8 + pixel % 8 == 7) continue;  // the diagonal
+      EXPECT_NEAR(frame.color(pixel)[0], painted ? 0.4 + 0.2 * 0.5 : 0.5, tolerance) << pixel;
+      EXPECT_NEAR(frame.color(pixel)[1], painted ? 0.2 * 0.5 : 0.5, tolerance) << pixel;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace splatscope

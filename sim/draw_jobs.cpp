@@ -86,7 +86,7 @@ MemoryLayout lay_out(const Trace& trace, const Machine& machine) {
   layout.depth = FrameLines::of(trace.width, trace.height, bytes_of(machine.numbers.depth));
   Allocator video(machine.memory);
   Allocator agp(machine.memory);
-  layout.color_address = video.take(layout.color.bytes());
+  layout.color_address = video.take(std::uint64_t{layout.color.bytes()} * (1 + trace.surfaces));
   layout.depth_address = video.take(layout.depth.bytes());
   for (const Texture& texture : trace.textures) layout.textures.push_back(video.take(texture_bytes(texture)));
   for (const Buffer& buffer : trace.buffers) {
@@ -143,6 +143,7 @@ PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const Me
     job.vertex_address = layout.buffers[draw->vertex_buffer];
     job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
     if (draw->texture) job.texture_address = layout.textures[*draw->texture];
+    if (draw->source) job.texture_address = layout.color_address + *draw->source * layout.color.bytes();
     prepared.jobs.push_back(job);
   }
   return prepared;

@@ -20,7 +20,7 @@ namespace splatscope::sim {
 struct MemoryLayout {
   FrameLines color;
   FrameLines depth;
-  std::uint32_t color_address = 0;
+  std::uint32_t color_address = 0;  // of the frame; the off-screen surfaces follow it, line by line
   std::uint32_t depth_address = 0;
   std::vector<std::uint32_t> textures;
   std::vector<std::uint32_t> buffers;

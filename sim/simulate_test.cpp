@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "model/error.h"
 #include "sim/testing/random_trace.h"
@@ -227,6 +228,31 @@ TEST(Simulate, ProgressGrowsToOne) {
   EXPECT_GE(seen.size(), 3u);
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
   EXPECT_EQ(seen.back(), 1.0);
+}
+
+// Between two draws into a surface one samples it: the caches are written back before, so that lines which
+// the second draw touches again are written once more.
+TEST(Simulate, ASampledSurfaceIsInMemory) {
+  RandomTrace made = simple_trace(4);
+  made.trace.surfaces = 1;
+  Draw into = std::get<Draw>(made.trace.commands[1]);
+  into.target = 1;
+  into.state.depth_test = into.state.depth_write = false;
+  Draw from = into;
+  from.target = 0;
+  from.texture.reset();
+  from.source = 1;
+  made.trace.commands = {Clear{}, into, from, into};
+  std::set<std::uint32_t> lines;
+  for (const QuadWork& quad : made.work[0].quads) lines.insert(quad.y / 2u * 16 + quad.x / 2u);
+  made.work.resize(3, made.work[0]);
+  for (std::uint32_t i = 0; i < 3; ++i) made.work[i].command = i + 1;
+  Machine machine;
+  machine.blend.cache_lines = machine.blend.cache_ways = 64;
+  const Result result = simulate(made.trace, made.work, machine);
+  EXPECT_EQ(statistic(result, "blend", "write_backs"), 3 * lines.size());
+  made.trace.commands = {Clear{}, into, into, into};
+  EXPECT_EQ(statistic(simulate(made.trace, made.work, machine), "blend", "write_backs"), lines.size());
 }
 
 }  // namespace

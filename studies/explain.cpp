@@ -51,7 +51,7 @@ class PixelHistory {
     if (step.writes_color) {
       step.source = probe(draw, draw.pixel_program);
       step.diffuse = probe(draw, diffuse_program_);
-      if (draw.texture) step.texel = probe(draw, texel_program_);
+      if (draw.texture || draw.source) step.texel = probe(draw, texel_program_);
     }
     add(step, draw);
   }
@@ -82,10 +82,13 @@ class PixelHistory {
   // What `program` gives for the pixel, whatever is in the frame.
   Vec4 probe(Draw draw, std::optional<std::uint32_t> program) const {
     draw.pixel_program = program;
+    draw.target = 0;
     draw.state.depth_test = false;
     draw.state.depth_write = false;
     draw.state.blend = false;
-    const Command commands[] = {Clear{}, draw};
+    std::vector<Command> commands;
+    if (draw.source) commands = done_;  // what is in the surface
+    commands.insert(commands.end(), {Clear{}, draw});
     return render_view(trace_, commands, probe_).color(pixel_);
   }
 

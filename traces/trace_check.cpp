@@ -17,6 +17,7 @@ constexpr std::uint32_t kMaxFrameEdge = 4096;    // pixels
 constexpr std::uint32_t kMaxTextureEdge = 2048;  // texels: the limit of both machines of 2002
 constexpr std::uint32_t kMaxStride = 1024;       // bytes: 16 attributes of 16 bytes, and room
 constexpr std::size_t kMaxConstants = 96;        // vs_1_1
+constexpr std::uint32_t kMaxSurfaces = 4;        // off-screen
 constexpr std::size_t kMaxFrames = 1000;         // each is a picture of `run`
 constexpr std::uint8_t kInputs = 16;             // vs_1_1
 
@@ -34,6 +35,7 @@ class Checker {
     where_ = "frame";
     in_range("width", trace_.width, 1, kMaxFrameEdge);
     in_range("height", trace_.height, 1, kMaxFrameEdge);
+    in_range("number of off-screen surfaces", trace_.surfaces, 0, kMaxSurfaces);
     for (std::size_t i = 0; i < trace_.buffers.size(); ++i) {
       where_ = fmt::format("buffer {}", i);
       in_range("memory place", static_cast<unsigned>(trace_.buffers[i].place), 0, 1);
@@ -114,7 +116,8 @@ class Checker {
         program("pixel program", *draw.pixel_program, isa::ShaderKind::pixel).texture_stages;
     if (stages & ~1u)
       fail("the pixel program samples a texture stage above 0", "stage 0, the only one of a draw");
-    if (stages && !draw.texture) fail("the pixel program samples a texture and the draw has none", "one");
+    if (stages && !draw.texture && !draw.source)
+      fail("the pixel program samples a texture and the draw has none", "one");
   }
 
   void check_command(const NormalizeOnHost&) const {}
@@ -128,6 +131,7 @@ class Checker {
   void check_command(const Draw& draw) const {
     check_programs(draw);
     if (draw.texture) item("texture", trace_.textures, *draw.texture);
+    check_surfaces(draw);
     in_range("number of constants", draw.constants.size(), 0, kMaxConstants);
     const auto last = static_cast<unsigned>(BlendFactor::src_alpha_saturate);
     in_range("source blend factor", static_cast<unsigned>(draw.state.source_factor), 0, last);
@@ -136,6 +140,16 @@ class Checker {
              static_cast<unsigned>(CullMode::counter_clockwise));
     check_attributes(draw);
     check_indices(draw);
+  }
+
+  void check_surfaces(const Draw& draw) const {
+    in_range("target surface", draw.target, 0, trace_.surfaces);
+    if (draw.target != 0 && (draw.state.depth_test || draw.state.depth_write))
+      fail("a draw into an off-screen surface tests or writes depth", "neither, as it has none");
+    if (!draw.source) return;
+    in_range("source surface", *draw.source, 1, trace_.surfaces);
+    if (*draw.source == draw.target) fail("a draw samples the surface that it writes", "another one");
+    if (draw.texture) fail("a draw samples a texture and a surface", "one of them");
   }
 
   void check_attributes(const Draw& draw) const {

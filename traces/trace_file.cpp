@@ -44,6 +44,8 @@ fb::Offset<stored::Draw> pack(fb::FlatBufferBuilder& builder, const Draw& draw) 
   out.add_index_count(draw.index_count);
   out.add_constants(packed_constants);
   out.add_state(state);
+  out.add_target(draw.target);
+  if (draw.source) out.add_source(*draw.source);
   return out.Finish();
 }
 
@@ -93,9 +95,10 @@ void pack(fb::FlatBufferBuilder& builder, const Trace& trace) {
           return stored::CreateCommand(builder, kind(body), pack(builder, body).Union());
         },
         command));
-  const auto root = stored::CreateTrace(builder, kTraceVersion, trace.width, trace.height,
-                                        builder.CreateVector(buffers), builder.CreateVector(textures),
-                                        builder.CreateVector(programs), builder.CreateVector(commands));
+  const auto root =
+      stored::CreateTrace(builder, kTraceVersion, trace.width, trace.height, builder.CreateVector(buffers),
+                          builder.CreateVector(textures), builder.CreateVector(programs),
+                          builder.CreateVector(commands), trace.surfaces);
   stored::FinishTraceBuffer(builder, root);
 }
 
@@ -122,6 +125,7 @@ class Reader {
     Trace trace;
     trace.width = in.width();
     trace.height = in.height();
+    trace.surfaces = in.surfaces();
     for (const stored::Buffer* b : *in.buffers()) {
       spend(b->bytes()->size());
       Buffer& buffer = trace.buffers.emplace_back();
@@ -163,6 +167,8 @@ class Reader {
     draw.vertex_program = in.vertex_program();
     if (in.pixel_program()) draw.pixel_program = *in.pixel_program();
     if (in.texture()) draw.texture = *in.texture();
+    draw.target = in.target();
+    if (in.source()) draw.source = *in.source();
     draw.vertex_buffer = in.vertex_buffer();
     draw.vertex_stride = in.vertex_stride();
     draw.base_vertex = in.base_vertex();

@@ -13,7 +13,7 @@
 namespace splatscope::traces {
 
 // Of the format. A file of a newer version is refused; older ones are read.
-inline constexpr std::uint32_t kTraceVersion = 2;
+inline constexpr std::uint32_t kTraceVersion = 3;
 
 // The file appears whole or not at all. Throws UserError where the trace breaks a rule of check_trace or the
 // place cannot be written.

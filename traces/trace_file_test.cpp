@@ -63,6 +63,8 @@ void expect_equal(const Draw& a, const Draw& b) {
   EXPECT_EQ(a.vertex_program, b.vertex_program);
   EXPECT_EQ(a.pixel_program, b.pixel_program);
   EXPECT_EQ(a.texture, b.texture);
+  EXPECT_EQ(a.target, b.target);
+  EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.vertex_buffer, b.vertex_buffer);
   EXPECT_EQ(a.vertex_stride, b.vertex_stride);
   ASSERT_EQ(a.attributes.size(), b.attributes.size());
@@ -136,6 +138,45 @@ TEST_F(TraceFile, FilesOfVersion1AreRead) {
   expect_equal(trace, read_trace(SPLATSCOPE_SOURCE "/tests/traces/version_1.trace"));
 }
 
+// A draw into an off-screen surface, and one that samples it.
+Trace trace_with_surface() {
+  Trace trace = small_trace();
+  trace.surfaces = 2;
+  Draw into = small_draw(), from = small_draw();
+  into.target = 2;
+  into.state.depth_write = false;
+  from.source = 2;
+  from.texture.reset();
+  trace.commands = {into, from};
+  return trace;
+}
+
+TEST_F(TraceFile, SurfacesAreWrittenAndReadBack) {
+  write_trace(trace_with_surface(), path_);
+  const Trace trace = read_trace(path_);
+  expect_equal(trace_with_surface(), trace);
+  EXPECT_EQ(trace.surfaces, 2u);
+}
+
+TEST_F(TraceFile, SurfacesThatCannotBeDrawnAreRefused) {
+  const auto refused = [](const std::function<void(Trace&, Draw & into, Draw & from)>& change) {
+    Trace trace = trace_with_surface();
+    change(trace, std::get<Draw>(trace.commands[0]), std::get<Draw>(trace.commands[1]));
+    EXPECT_THROW(check_trace(trace, "changed"), UserError);
+  };
+  refused([](Trace& trace, Draw&, Draw&) { trace.surfaces = 1000; });
+  refused([](Trace&, Draw& into, Draw&) { into.target = 3; });
+  refused([](Trace&, Draw& into, Draw&) { into.state.depth_test = true; });
+  refused([](Trace&, Draw& into, Draw&) { into.state.depth_write = true; });
+  refused([](Trace&, Draw&, Draw& from) { from.source = 0; });
+  refused([](Trace&, Draw&, Draw& from) { from.source = 3; });
+  refused([](Trace&, Draw&, Draw& from) { from.texture = 0; });
+  refused([](Trace&, Draw& into, Draw&) {
+    into.texture.reset();
+    into.source = 2;
+  });
+}
+
 TEST_F(TraceFile, AbsentProgramAndTextureStayAbsent) {
   Trace trace = small_trace();
   std::get<Draw>(trace.commands[1]).pixel_program.reset();
@@ -185,7 +226,7 @@ TEST_F(TraceFile, NewerVersionIsRefusedByName) {
     read_trace(path_);
     FAIL() << "a newer version was let in";
   } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 3, expected at most 2"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("version 4, expected at most 3"), std::string::npos)
         << error.what();
   }
 }

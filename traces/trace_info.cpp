@@ -29,6 +29,8 @@ std::string describe(const Trace& trace, const Draw& draw) {
   text += fmt::format(", {} bytes a vertex from {} memory", draw.vertex_stride,
                       name(trace.buffers[draw.vertex_buffer].place));
   if (draw.texture) text += fmt::format(", texture {}", *draw.texture);
+  if (draw.source) text += fmt::format(", from surface {}", *draw.source);
+  if (draw.target != 0) text += fmt::format(", into surface {}", draw.target);
   const DrawState& s = draw.state;
   if (s.depth_test) text += ", depth test";
   if (s.depth_write) text += ", depth write";
@@ -44,6 +46,7 @@ std::string describe(const Trace& trace) {
   std::string text =
       fmt::format("version    {}\nframe      {} x {}\n", kTraceVersion, trace.width, trace.height);
   text += fmt::format("frames     {}\n", frame_ends(trace).size());
+  if (trace.surfaces != 0) text += fmt::format("surfaces   {} off-screen\n", trace.surfaces);
   for (std::size_t i = 0; i < trace.buffers.size(); ++i)
     text += fmt::format("buffer     {}: {} bytes in {} memory\n", i, trace.buffers[i].bytes.size(),
                         name(trace.buffers[i].place));

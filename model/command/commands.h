@@ -66,6 +66,11 @@ struct Draw {
   std::uint32_t vertex_program = 0;
   std::optional<std::uint32_t> pixel_program;  // absent: the interpolated diffuse colour
   std::optional<std::uint32_t> texture;        // of stage 0
+  // Render to texture: where the draw writes, 0 the frame, n > 0 the off-screen surface n, which has no
+  // depth; and an off-screen surface other than the target that stage 0 samples in place of a texture: the
+  // nearest pixel, all four channels.
+  std::uint32_t target = 0;
+  std::optional<std::uint32_t> source;
   std::uint32_t vertex_buffer = 0;
   std::uint32_t vertex_stride = 0;  // bytes
   std::vector<VertexAttribute> attributes;
@@ -77,6 +82,7 @@ struct Draw {
   DrawState state;
 };
 
+// Of the frame; a draw clears an off-screen surface.
 struct Clear {
   Vec4 color{};        // r g b a
   float depth = 1.0f;  // 0..1
@@ -95,6 +101,7 @@ using Command = std::variant<Clear, Draw, NormalizeOnHost, Present>;
 struct Trace {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
+  std::uint32_t surfaces = 0;  // off-screen ones, of the frame's size and format; 0 before the first draw
   std::vector<Buffer> buffers;
   std::vector<Texture> textures;
   std::vector<ShaderText> programs;

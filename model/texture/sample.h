@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "model/command/commands.h"
+#include "model/output/frame.h"
 #include "model/work/work.h"
 
 namespace splatscope::texture {
@@ -19,5 +21,11 @@ void sample_nearest(const Texture& texture, const float* u, const float* v, std:
 // to 8.
 void sample_bilinear(const Texture& texture, int weight_bits, const float* u, const float* v,
                      std::span<float> alpha);
+
+// All channels of the pixels of a surface nearest to (u, v), as above. `color`: r, g, b
+// and a. `blocks`: of 16 bytes, for as many fragments as there are; a surface lies in memory in tiles of 4x4
+// pixels, by rows of tiles, and a tile in quads of 2x2 pixels.
+void sample_surface(const Frame& surface, const float* u, const float* v, const std::array<float*, 4>& color,
+                    std::span<std::uint32_t> blocks);
 
 }  // namespace splatscope::texture

@@ -40,6 +40,35 @@ TEST(SampleNearest, ReadsTexelsOfOtherDepths) {
   EXPECT_EQ(0xb34 / 4095.0f, alpha[0]);
 }
 
+TEST(SampleSurface, TakesTheNearestPixelAndItsBlock) {
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  Frame surface(10, 6, formats), bytes(10, 6, {});
+  for (std::size_t i = 0; i < 60; ++i) {
+    surface.colors32[i] = {static_cast<float>(i), 0.5f, -1, 2};
+    bytes.colors8[i] = {static_cast<std::uint8_t>(i), 0, 51, 255};
+  }
+  // Pixel centres, and places beyond the edges. A tile is 4x4 pixels, three of them lie in a row.
+  const std::array<float, 4> u{0.05f, 0.55f, 7, -1}, v{1 / 12.0f, 3 / 12.0f, 2, 5 / 12.0f};
+  const unsigned columns[] = {0, 5, 9, 0}, rows[] = {0, 1, 5, 2};
+  float color[4][4];
+  const std::array<float*, 4> channels{color[0], color[1], color[2], color[3]};
+  std::array<std::uint32_t, 4> blocks;
+  sample_surface(surface, u.data(), v.data(), channels, blocks);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(color[0][i], static_cast<float>(rows[i] * 10 + columns[i]));
+    EXPECT_EQ(color[2][i], -1);
+    EXPECT_EQ(color[3][i], 2);
+  }
+  // 16 bytes a pixel: a block each. (5, 1) is pixel 3 of quad 0 of tile 1; (9, 5) pixel 3 of quad 0 of tile
+  // 5; (0, 2) pixel 0 of quad 2.
+  EXPECT_EQ(blocks, (std::array<std::uint32_t, 4>{0, 16 + 3, 5 * 16 + 3, 8}));
+  sample_surface(bytes, u.data(), v.data(), channels, blocks);
+  EXPECT_EQ(color[2][0], 0.2f);
+  // 4 bytes a pixel: a quad is a block.
+  EXPECT_EQ(blocks, (std::array<std::uint32_t, 4>{0, 4, 20, 2}));
+}
+
 TEST(SampleBilinear, WeighsTheFourTexelsAbout) {
   const Texture texture{2, 2, {0, 255, 255, 255}};
   const auto at = [&](float u, float v, int bits) {

@@ -62,12 +62,12 @@ struct Population {
   }
 };
 
-using State = std::tuple<std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>, bool,
-                         bool, bool, bool>;
+using State = std::tuple<std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>,
+                         std::uint32_t, std::optional<std::uint32_t>, bool, bool, bool, bool>;
 State state_of(const Draw& draw) {
   const DrawState& s = draw.state;
-  return {draw.vertex_program, draw.pixel_program, draw.texture, s.depth_test,
-          s.depth_write,       s.color_write,      s.blend};
+  return {draw.vertex_program, draw.pixel_program, draw.texture,  draw.target, draw.source,
+          s.depth_test,        s.depth_write,      s.color_write, s.blend};
 }
 
 // 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).

@@ -39,6 +39,7 @@ Traffic TrafficCounter::of(const DrawJob& job) {
   CacheTags depth(machine_.depth.cache_lines, machine_.depth.cache_ways);
   CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);
   CacheTags texture(machine_.texture.cache_lines, machine_.texture.cache_ways);
+  const double fill_bytes = job.draw->source ? machine_.texture.line_bytes : machine_.texture.fill_bytes;
   Traffic sum;
   double quads = 0, colored = 0;
   const std::uint32_t* blocks = job.work->texel_blocks.data();
@@ -57,7 +58,7 @@ Traffic TrafficCounter::of(const DrawJob& job) {
         ++colored;
         sum.color += touch(color, line, state.blend ? color_bytes : 0, color_bytes, true);
         for (const std::uint32_t* block = blocks; block != blocks_end; ++block) {
-          sum.texture += touch(texture, *block / blocks_a_line, machine_.texture.fill_bytes, 0, false);
+          sum.texture += touch(texture, *block / blocks_a_line, fill_bytes, 0, false);
         }
       }
     }

@@ -40,6 +40,7 @@ class RandomMaker {
          "mad r3, r2, r1.y, v1\nrcp r4.w, r0.x\nmul r5, v1, c2\nmul oD0, r5, r4.w\nm4x4 oPos, r3, c4\n"},
         {"color.ps", "ps_1_1\ntex t0\nmul r0, t0, v0\n"}};
     made.trace.textures = {{64, 64, {}}};
+    if (chance(0.4)) made.trace.surfaces = 1;
     const auto place = [&] { return chance(0.3) ? MemoryPlace::agp : MemoryPlace::video; };
     made.trace.buffers = {{place(), {}}, {place(), {}}};
     if (chance(0.8)) made.trace.commands.emplace_back(Clear{});
@@ -120,6 +121,11 @@ class RandomMaker {
                   chance(0.7), BlendFactor::one, BlendFactor::one};
     if (chance(0.7)) draw.pixel_program = 2;
     if (chance(0.7)) draw.texture = 0;
+    if (made.trace.surfaces != 0 && chance(0.6)) {
+      draw.target = number(0, 1);
+      if (draw.target == 0) draw.source = 1;
+      if (draw.target == 1) draw.state.depth_test = draw.state.depth_write = false;
+    }
     DrawWork work;
     work.command = static_cast<std::uint32_t>(made.trace.commands.size());
     for (std::uint32_t i = 0; i < draw.index_count / 3; ++i) add_triangle(made.trace, draw, work);
@@ -144,7 +150,7 @@ class RandomMaker {
       quad.y = static_cast<std::uint16_t>(number(0, (trace.height - 1) / 2));
       quad.covered = static_cast<std::uint8_t>(number(1, 15));
       quad.passed = static_cast<std::uint8_t>(quad.covered & number(0, 15));
-      const bool sampled = draw.texture && draw.state.color_write && quad.passed != 0;
+      const bool sampled = (draw.texture || draw.source) && draw.state.color_write && quad.passed != 0;
       quad.texel_block_count = static_cast<std::uint8_t>(sampled ? number(1, 4) : 0);
       for (int block = 0; block < quad.texel_block_count; ++block)
         work.texel_blocks.push_back(number(0, 255));

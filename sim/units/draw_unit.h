@@ -37,7 +37,7 @@ inline bool uses_depth(const Draw& draw) {
   return draw.state.depth_test || draw.state.depth_write;
 }
 inline bool uses_texture(const Draw& draw) {
-  return draw.state.color_write && draw.texture.has_value();
+  return draw.state.color_write && (draw.texture.has_value() || draw.source.has_value());
 }
 
 // Whether a quad goes on to texture, pixel unit and blending.

@@ -157,6 +157,7 @@ void GlRenderer::run(const Clear& clear) const {
 }
 
 void GlRenderer::run(const Draw& draw) const {
+  if (draw.target != 0 || draw.source) throw ModelError("off-screen surfaces are not drawn");
   const DrawState& state = draw.state;
   set(GL_DEPTH_TEST, state.depth_test);
   glDepthFunc(GL_LEQUAL);

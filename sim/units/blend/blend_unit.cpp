@@ -20,7 +20,7 @@ std::uint64_t BlendUnit::start(const DrawJob& job) {
 
 void BlendUnit::pass(const Cut& cut) {
   for (const QuadWork& quad : last_of(cut.quads)) {
-    if (is_colored(job(), quad)) cache_.pass(lines_.line_of(quad), true);
+    if (is_colored(job(), quad)) cache_.pass(line_of(quad), true);
   }
 }
 
@@ -36,7 +36,7 @@ bool BlendUnit::enter(Cycle now) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   pass_cuts(in_->front());
   const QuadWork& quad = job().work->quads[in_->front()];
-  in_the_way_ = cache_.touch(now, lines_.line_of(quad), job().draw->state.blend, true);
+  in_the_way_ = cache_.touch(now, line_of(quad), job().draw->state.blend, true);
   if (in_the_way_) return false;
   cache_.enter(in_->pop(now));
   return true;

@@ -5,8 +5,8 @@
 
 namespace splatscope::sim {
 
-// Blends quads into the frame buffer through a write-back cache. Draws that do not blend write without
-// reading.
+// Blends quads into the frame buffer, or an off-screen surface, through a write-back cache that holds lines
+// of all of them. Draws that do not blend write without reading.
 class BlendUnit final : public FrameUnit {
  public:
   BlendUnit(std::string name, Completion& completion, const Machine::Blend& spec, const FrameLines& lines,
@@ -15,14 +15,17 @@ class BlendUnit final : public FrameUnit {
 
   std::vector<Statistic> statistics() const override;
 
-  // From the command processor: the cache is emptied.
-  void clear() { cache_.invalidate(); }
+  // From the command processor: the cache drops the frame's lines.
+  void clear() { cache_.invalidate(lines_.lines()); }
 
  private:
   std::uint64_t start(const DrawJob& job) override;
   bool leave(Cycle now) override;
   bool enter(Cycle now) override;
   void pass(const Cut& cut) override;
+  std::uint32_t line_of(const QuadWork& quad) const {
+    return job().draw->target * lines_.lines() + lines_.line_of(quad);
+  }
 
   std::uint64_t quads_ = 0;
 };

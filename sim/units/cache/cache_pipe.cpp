@@ -103,8 +103,8 @@ bool CachePipe::flush(Cycle now) {
   return false;
 }
 
-void CachePipe::invalidate() {
-  tags_.invalidate();
+void CachePipe::invalidate(std::uint32_t end) {
+  tags_.invalidate(end);
 }
 
 }  // namespace splatscope::sim

@@ -26,6 +26,8 @@ class CachePipe {
   // The port to take lines from, and the address of line 0. The cache keeps what it holds; invalidate()
   // empties it.
   void connect(MemoryPort& port, std::uint32_t address);
+  // Reads this much of a line on a miss from now on.
+  void set_fill(std::uint32_t bytes) { fill_bytes_ = bytes; }
 
   bool has_room() const { return tail_ - head_ < items_; }
 
@@ -54,7 +56,8 @@ class CachePipe {
   // Writes one dirty line back, if there is one. False: none is left, and all writes have reached memory.
   bool flush(Cycle now);
   Cycle next_flush() const { return next_flush_; }
-  void invalidate();
+  // Drops the lines below `end`, as they are.
+  void invalidate(std::uint32_t end = CacheTags::kNoLine);
 
   std::uint64_t touches() const { return touches_; }
   std::uint64_t misses() const { return misses_; }

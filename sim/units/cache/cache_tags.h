@@ -48,7 +48,12 @@ class CacheTags {
   void take(Way& way, std::uint32_t line, bool dirty) { way = {line, ++clock_, dirty}; }
 
   std::span<Way> all() { return tags_; }
-  void invalidate() { std::fill(tags_.begin(), tags_.end(), Way{}); }
+  // Drops the lines below `end`.
+  void invalidate(std::uint32_t end) {
+    for (Way& way : tags_) {
+      if (way.line < end) way = {};
+    }
+  }
 
  private:
   std::uint32_t ways_;

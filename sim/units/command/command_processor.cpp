@@ -1,6 +1,7 @@
 #include "sim/units/command/command_processor.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace splatscope::sim {
 
@@ -34,6 +35,11 @@ void CommandProcessor::begin(Cycle now, const Order& order) {
   switch (order.kind) {
     case OrderKind::draw:
       if (prepare_) prepare_(order.job);
+      // A surface that is sampled must be in memory.
+      if ((*jobs_)[order.job].draw->source) {
+        after_flush_ = &(*jobs_)[order.job];
+        return begin_flush(now);
+      }
       return begin_draw(now, (*jobs_)[order.job]);
     case OrderKind::flush:
       return begin_flush(now);
@@ -110,6 +116,10 @@ Step CommandProcessor::advance(Cycle now) {
   }
   if (phase_ == Phase::working) {
     if (completion_.done_at() > now) return idle(completion_.done_at());
+    if (after_flush_) {
+      begin_draw(now, *std::exchange(after_flush_, nullptr));
+      return busy(now + 1);
+    }
     phase_ = Phase::reporting;
   }
   if (!to_host_->can_push(now)) return blocked(to_host_->consumer(), to_host_->next_free());

@@ -62,8 +62,9 @@ class CommandProcessor final : public Unit {
   std::vector<Surface> cleared_;
 
   Phase phase_ = Phase::waiting;
-  std::size_t surface_ = 0;   // of the fill
-  std::uint32_t filled_ = 0;  // bytes of it
+  const DrawJob* after_flush_ = nullptr;  // begins when the caches are written back
+  std::size_t surface_ = 0;               // of the fill
+  std::uint32_t filled_ = 0;              // bytes of it
   std::uint32_t orders_ = 0;
   std::uint64_t bytes_filled_ = 0;
 };
