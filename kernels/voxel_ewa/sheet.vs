@@ -1,0 +1,4 @@
+vs_1_1
+; A rectangle of the window: where it lies in clip coordinates, and in a surface of the frame's size.
+mov oPos, v0
+mov oT0.xy, v1

@@ -1,0 +1,368 @@
+#include "traces/volume_trace.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <optional>
+
+#include "kernels/object_space_ewa/alpha_texture.h"
+#include "kernels/object_space_ewa/programs.h"
+#include "kernels/reference/volume/footprint.h"
+#include "kernels/reference/volume/sheet_drawing.h"
+#include "kernels/splat_programs.h"
+#include "kernels/voxel_ewa/programs.h"
+#include "traces/splat_trace.h"
+
+namespace splatscope::traces {
+namespace {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr std::uint32_t kCorners = 4, kIndices = 6;  // of a quad
+constexpr std::int16_t kCornerSigns[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+
+// What the host knows of a voxel in one view.
+struct HostVoxel {
+  bool drawn = false;
+  bool flat = false;
+  dvec3 color{};
+  double weight = 0;    // VolumeSplat's, with the slope of a flat kernel
+  double opacity = 0;   // at its centre
+  dvec2 low{}, high{};  // its rectangle, pixels
+};
+
+// Of pixels; right and bottom excluded.
+struct Rectangle {
+  int left = std::numeric_limits<int>::max(), top = left, right = 0, bottom = 0;
+
+  void add(const HostVoxel& voxel, const kernels::View& view) {
+    const auto pixel = [](double x, int size) {
+      return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size)));
+    };
+    // A pixel more: the machine's corners differ by its rounding.
+    left = std::min(left, pixel(std::floor(voxel.low.x) - 1, view.width));
+    top = std::min(top, pixel(std::floor(voxel.low.y) - 1, view.height));
+    right = std::max(right, pixel(std::ceil(voxel.high.x) + 1, view.width));
+    bottom = std::max(bottom, pixel(std::ceil(voxel.high.y) + 1, view.height));
+  }
+};
+
+class VertexWriter {
+ public:
+  explicit VertexWriter(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  template <class T>
+  void put(T value) {
+    const auto* raw = reinterpret_cast<const std::byte*>(&value);
+    bytes_.insert(bytes_.end(), raw, raw + sizeof value);
+  }
+  void put(const dvec3& v) {
+    for (int i = 0; i < 3; ++i) put(static_cast<float>(v[i]));
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+};
+
+std::uint8_t byte_of(double value) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
+}
+
+// The two ways to draw a voxel.
+enum Kind : std::size_t { kShared, kOwn, kKinds };
+
+// Faint voxels beside opaque ones would have few of the 255 steps of a vertex's opacity and of the
+// interpolated alpha: each level has an eighth of the weight of the one before it as its unit, and a pixel
+// program with its own scale.
+constexpr std::size_t kLevels = 3;
+constexpr double kLevelRatio = 1.0 / 8;
+
+// What the alphas of a level are relative to.
+struct Level {
+  double weight = 0;   // the most that its vertices' opacity says
+  double opacity = 0;  // the largest at a splat's centre
+};
+
+class Recorder {
+ public:
+  Recorder(const kernels::View& view, const kernels::VolumeSplats& splats,
+           const VolumeTraceSettings& settings)
+      : view_(view), splats_(splats), settings_(settings), voxels_(splats.splats.size()) {}
+
+  VolumeTrace record() {
+    look_at_voxels();
+    Trace& trace = result_.trace;
+    trace.width = static_cast<std::uint32_t>(view_.width);
+    trace.height = static_cast<std::uint32_t>(view_.height);
+    trace.surfaces = 1;
+    trace.commands.emplace_back(Clear{});
+    if (result_.splats == 0) return std::move(result_);
+    trace.buffers.resize(kBuffers);
+    trace.programs = {
+        kernels::shader_text(kernels::kVoxelGridProgram), kernels::shader_text(kernels::kVoxelProgram),
+        kernels::shader_text(kernels::kSheetProgram), kernels::shader_text(kernels::kSheetPixelProgram),
+        kernels::shader_text(kernels::kSheetClearPixelProgram)};
+    for (const Level& level : levels_) trace.programs.push_back(kernels::voxel_pixel_program(level.opacity));
+    const double cutoff = settings_.cutoff / 2;  // c of Ren 2002, Eq. 14
+    trace.textures = {kernels::alpha_texture(
+        cutoff, settings_.texture_length > 0 ? settings_.texture_length : kernels::optimal_length(cutoff),
+        kernels::CutoffShape::circle, settings_.texture_bits)};
+    const kernels::SheetAxis axis = kernels::sheet_axis(view_);
+    const kernels::SheetOrder order = kernels::sheet_order(splats_, axis.axis);
+    const std::size_t sheets = order.first.size() - 1;
+    for (std::size_t i = 0; i < sheets; ++i) {
+      const std::size_t sheet = axis.last_is_nearest ? i : sheets - 1 - i;
+      add_sheet(
+          std::span(order.splats).subspan(order.first[sheet], order.first[sheet + 1] - order.first[sheet]));
+    }
+    finish_buffers();
+    return std::move(result_);
+  }
+
+ private:
+  enum BufferNumber : std::uint32_t { kSharedVertices, kOwnVertices, kSheetVertices, kIndexBuffer, kBuffers };
+  enum ProgramNumber : std::uint32_t { kSheetVertex = kKinds, kSheetPixels, kClearPixels, kVoxelPixels };
+
+  dmat3 object_variance(const kernels::VolumeSplat& splat) const {
+    const dmat3& variance = splats_.kernels[splat.kernel];
+    if (!(splat.flatness > 0)) return variance;
+    return kernels::flattened(variance, glm::normalize(dvec3(splat.normal)),
+                              1 / (1 - static_cast<double>(splat.flatness)));
+  }
+
+  HostVoxel look_at(const kernels::VolumeSplat& splat) const {
+    HostVoxel voxel;
+    const dvec3 camera = view_.camera_space(splat.position);
+    const auto print =
+        kernels::footprint(view_, kernels::Projection::perspective, kernels::VolumePrefilter::ewa, camera,
+                           kernels::camera_variance(view_, object_variance(splat)));
+    if (!print) return voxel;
+    const dvec2 reach = print->reach(settings_.cutoff);
+    voxel.low = print->center - reach;
+    voxel.high = print->center + reach;
+    voxel.drawn =
+        voxel.high.x > 0 && voxel.high.y > 0 && voxel.low.x < view_.width && voxel.low.y < view_.height;
+    const dvec3 turned = view_.camera_direction(splat.normal);
+    const dvec3 normal = turned == dvec3(0) ? turned : glm::normalize(turned);
+    voxel.flat = splat.flatness > 0;
+    voxel.color =
+        kernels::shaded(settings_.light, kernels::Projection::perspective, camera, normal, splat.color);
+    voxel.weight = splat.weight;
+    if (voxel.flat) voxel.weight *= std::abs(glm::dot(normal, glm::normalize(camera)));
+    voxel.opacity = voxel.weight * print->peak * kernels::opacity_scale(view_, settings_.cutoff);
+    return voxel;
+  }
+
+  void look_at_voxels() {
+    oneapi::tbb::parallel_for(std::size_t{0}, voxels_.size(),
+                              [&](std::size_t i) { voxels_[i] = look_at(splats_.splats[i]); });
+    for (const HostVoxel& voxel : voxels_) {
+      if (!voxel.drawn) continue;
+      ++result_.splats;
+      levels_[0].weight = std::max(levels_[0].weight, voxel.weight);
+    }
+    result_.left_out = voxels_.size() - result_.splats;
+    for (std::size_t i = 1; i < kLevels; ++i) levels_[i].weight = kLevelRatio * levels_[i - 1].weight;
+    for (const HostVoxel& voxel : voxels_) {
+      double& opacity = levels_[level_of(voxel)].opacity;
+      if (voxel.drawn) opacity = std::max(opacity, voxel.opacity);
+    }
+    // A pixel program's constant is at most 1, and more saturates anyway; a level without voxels needs none.
+    for (Level& level : levels_) level.opacity = std::clamp(level.opacity, 1e-6, 1.0);
+  }
+
+  std::size_t level_of(const HostVoxel& voxel) const {
+    std::size_t level = 0;
+    while (level + 1 < kLevels && voxel.weight <= levels_[level + 1].weight) ++level;
+    return level;
+  }
+
+  void add_sheet(std::span<const std::uint32_t> numbers) {
+    Rectangle rectangle;
+    std::array<std::array<std::vector<std::uint32_t>, kLevels>, kKinds> voxels;
+    for (const std::uint32_t k : numbers) {
+      if (!voxels_[k].drawn) continue;
+      rectangle.add(voxels_[k], view_);
+      const bool shared = settings_.shared_variance && splats_.kernels.size() == 1 && !voxels_[k].flat;
+      voxels[shared ? kShared : kOwn][level_of(voxels_[k])].push_back(k);
+    }
+    if (rectangle.right <= rectangle.left || rectangle.bottom <= rectangle.top) return;
+    const std::uint32_t base = add_rectangle(rectangle);
+    Draw clear = sheet_draw(base);
+    clear.target = 1;
+    clear.pixel_program = kClearPixels;
+    result_.trace.commands.emplace_back(clear);
+    for (const Kind kind : {kShared, kOwn}) {
+      for (std::size_t level = 0; level < kLevels; ++level) add_voxels(kind, level, voxels[kind][level]);
+    }
+    Draw composite = sheet_draw(base);
+    composite.source = 1;
+    composite.pixel_program = kSheetPixels;
+    composite.state.blend = true;
+    composite.state.destination_factor = BlendFactor::inv_src_alpha;
+    result_.trace.commands.emplace_back(composite);
+    ++result_.sheets;
+  }
+
+  // Returns its first vertex. Pixels begin at the window's integers.
+  std::uint32_t add_rectangle(const Rectangle& r) {
+    std::vector<std::byte>& bytes = result_.trace.buffers[kSheetVertices].bytes;
+    const auto base = static_cast<std::uint32_t>(bytes.size() / kSheetStride);
+    VertexWriter writer(bytes);
+    const dvec2 corners[kCorners] = {
+        {r.left, r.top}, {r.right, r.top}, {r.right, r.bottom}, {r.left, r.bottom}};
+    for (const dvec2& corner : corners) {
+      const dvec2 from_center = corner - view_.center();
+      writer.put(dvec3(2 * from_center.x / view_.width, -2 * from_center.y / view_.height, 0));
+      writer.put(static_cast<float>(corner.x / view_.width));
+      writer.put(static_cast<float>(corner.y / view_.height));
+    }
+    return base;
+  }
+
+  static constexpr std::uint32_t kSheetStride = 20;
+
+  static Draw undepthed() {
+    Draw draw;
+    draw.index_buffer = kIndexBuffer;
+    draw.state.depth_test = draw.state.depth_write = false;
+    return draw;
+  }
+
+  Draw sheet_draw(std::uint32_t base) const {
+    Draw draw = undepthed();
+    draw.vertex_program = kSheetVertex;
+    draw.vertex_buffer = kSheetVertices;
+    draw.vertex_stride = kSheetStride;
+    draw.attributes = {{0, VertexFormat::float3, 0}, {1, VertexFormat::float2, 12}};
+    draw.base_vertex = base;
+    draw.index_count = kIndices;
+    return draw;
+  }
+
+  Draw voxel_draw(Kind kind, std::size_t level) const {
+    Draw draw = undepthed();
+    draw.vertex_program = static_cast<std::uint32_t>(kind);
+    draw.vertex_buffer = kind == kShared ? kSharedVertices : kOwnVertices;
+    draw.pixel_program = static_cast<std::uint32_t>(kVoxelPixels + level);
+    draw.texture = 0;
+    draw.target = 1;
+    draw.state.blend = true;
+    draw.state.destination_factor = BlendFactor::one;
+    std::uint32_t offset = 0;
+    const auto add = [&](int input, VertexFormat format, std::uint32_t bytes) {
+      draw.attributes.push_back(
+          {static_cast<std::uint8_t>(input), format, static_cast<std::uint16_t>(offset)});
+      offset += bytes;
+    };
+    if (kind == kShared) {
+      add(kernels::kVoxelPositionInput, VertexFormat::short4, 8);
+    } else {
+      add(kernels::kVoxelPositionInput, VertexFormat::float3, 12);
+    }
+    add(kernels::kVoxelCornerInput, VertexFormat::short2, 4);
+    if (settings_.float_colors) {
+      add(kernels::kVoxelColorInput, VertexFormat::float4, 16);
+    } else {
+      add(kernels::kVoxelColorInput, VertexFormat::d3dcolor, 4);
+    }
+    if (kind == kOwn) {
+      for (int row = 0; row < 3; ++row) add(kernels::kVoxelVarianceInput + row, VertexFormat::float3, 12);
+    }
+    draw.vertex_stride = offset;
+    // On a grid positions are numbers of voxels; elsewhere the general program takes object units.
+    const dvec3 scale = kind == kShared ? splats_.sheet_spacing : dvec3(1),
+                origin = kind == kShared ? splats_.low : dvec3(0);
+    glm::dmat4 to_object(1.0);
+    for (int i = 0; i < 3; ++i) {
+      to_object[i][i] = scale[i];
+      to_object[3][i] = origin[i];
+    }
+    const double unit =
+        levels_[level].weight * kernels::opacity_scale(view_, settings_.cutoff) / levels_[level].opacity;
+    draw.constants = kernels::voxel_constants(
+        view_, to_object, kind == kShared ? &splats_.kernels[0] : nullptr, settings_.cutoff, unit);
+    return draw;
+  }
+
+  void add_voxels(Kind kind, std::size_t level, std::span<const std::uint32_t> numbers) {
+    if (numbers.empty()) return;
+    Draw draw = voxel_draw(kind, level);
+    std::vector<std::byte>& bytes = result_.trace.buffers[draw.vertex_buffer].bytes;
+    for (std::size_t first = 0; first < numbers.size(); first += kSurfelsADraw) {
+      const std::size_t count = std::min(kSurfelsADraw, numbers.size() - first);
+      draw.base_vertex = static_cast<std::uint32_t>(bytes.size() / draw.vertex_stride);
+      draw.index_count = static_cast<std::uint32_t>(count) * kIndices;
+      for (const std::uint32_t k : numbers.subspan(first, count))
+        add_vertices(kind, levels_[level], k, bytes);
+      most_quads_ = std::max(most_quads_, count);
+      result_.trace.commands.emplace_back(draw);
+    }
+    if (kind == kOwn) result_.flat += numbers.size();
+  }
+
+  void add_vertices(Kind kind, const Level& level, std::uint32_t k, std::vector<std::byte>& bytes) {
+    const kernels::VolumeSplat& splat = splats_.splats[k];
+    const HostVoxel& voxel = voxels_[k];
+    const double alpha = voxel.weight / level.weight;
+    const dvec3 on_grid = (dvec3(splat.position) - splats_.low) / splats_.sheet_spacing;
+    const dmat3 variance = kind == kOwn ? object_variance(splat) : dmat3(1.0);
+    VertexWriter writer(bytes);
+    for (const auto& corner : kCornerSigns) {
+      if (kind == kShared) {
+        for (int i = 0; i < 3; ++i) writer.put(static_cast<std::int16_t>(std::lround(on_grid[i])));
+        writer.put(std::int16_t{1});
+      } else {
+        writer.put(dvec3(splat.position));
+      }
+      writer.put(corner[0]);
+      writer.put(corner[1]);
+      if (settings_.float_colors) {
+        writer.put(voxel.color);
+        writer.put(static_cast<float>(alpha));
+      } else {
+        for (const double channel : {voxel.color.b, voxel.color.g, voxel.color.r, alpha})
+          writer.put(byte_of(channel));
+      }
+      if (kind == kOwn) {
+        for (int row = 0; row < 3; ++row) writer.put(variance[row]);
+      }
+    }
+  }
+
+  void finish_buffers() {
+    constexpr std::uint16_t order[kIndices] = {0, 1, 2, 0, 2, 3};
+    VertexWriter writer(result_.trace.buffers[kIndexBuffer].bytes);
+    for (std::size_t i = 0; i < std::max<std::size_t>(most_quads_, 1) * kIndices; ++i)
+      writer.put(static_cast<std::uint16_t>(i / kIndices * kCorners + order[i % kIndices]));
+    for (const std::uint32_t buffer : {kSharedVertices, kOwnVertices, kSheetVertices})
+      result_.vertex_bytes += result_.trace.buffers[buffer].bytes.size();
+    // What the application writes anew each frame, as its voxels are shaded, lies in AGP memory.
+    for (const std::uint32_t buffer : {kSharedVertices, kOwnVertices})
+      result_.trace.buffers[buffer].place = MemoryPlace::agp;
+  }
+
+  const kernels::View& view_;
+  const kernels::VolumeSplats& splats_;
+  const VolumeTraceSettings& settings_;
+  std::vector<HostVoxel> voxels_;
+  std::array<Level, kLevels> levels_;
+  std::size_t most_quads_ = 0;
+  VolumeTrace result_;
+};
+
+}  // namespace
+
+VolumeTrace volume_trace(const kernels::View& view, const kernels::VolumeSplats& splats,
+                         const VolumeTraceSettings& settings) {
+  return Recorder(view, splats, settings).record();
+}
+
+}  // namespace splatscope::traces

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/reference/volume/volume_rendering.h"
+#include "kernels/reference/volume/volume_splats.h"
+#include "kernels/view.h"
+#include "model/command/commands.h"
+
+// A volume as a GPU of 2002 would have drawn it: Zwicker 2002, section 9. What the host does each frame: it
+// chooses the axis of the sheets, shades the voxels, and issues the draws.
+namespace splatscope::traces {
+
+struct VolumeTraceSettings {
+  double cutoff = 4;  // radial index at which a splat ends (Zwicker 2002, section 7.1)
+  kernels::PhongLight light{};
+  int texture_length = 0;     // texels along an edge of the Gaussian; 0: Eq. 16's (Ren 2002)
+  int texture_bits = 8;       // 1 to 16; no trace file holds more than 8
+  bool float_colors = false;  // colour and opacity as four floats a vertex; else 8 bits each
+  // Draws voxels of one variance by the program that has it in its constants; false: all by the general one.
+  bool shared_variance = true;
+};
+
+struct VolumeTrace {
+  Trace trace;
+  std::size_t splats = 0;    // drawn
+  std::size_t flat = 0;      // of these: by the general program
+  std::size_t left_out = 0;  // before the near plane, outside of the frame, or without a finite footprint
+  std::size_t sheets = 0;    // drawn: those with a splat in the frame
+  std::size_t vertex_bytes = 0;
+};
+
+// One frame of a perspective view. From back to front, for each sheet of the axis most parallel to the line
+// of sight: its rectangle of the off-screen surface is cleared, its splats are added up there, and the
+// rectangle is composited into the frame. Sums above 1 saturate, where the reference divides by them: keep
+// the opacity of a layer seen at the steepest slope below 1.
+VolumeTrace volume_trace(const kernels::View& view, const kernels::VolumeSplats& splats,
+                         const VolumeTraceSettings& settings);
+
+}  // namespace splatscope::traces

@@ -1,0 +1,115 @@
+#include "traces/volume_trace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "kernels/reference/volume/procedural.h"
+#include "model/render.h"
+#include "traces/trace_file.h"
+
+namespace splatscope::traces {
+namespace {
+
+using kernels::VolumeSplats;
+
+// Shells of two opacities; flat kernels where the value is high.
+VolumeSplats shells(int n, bool flat) {
+  const glm::dvec3 blue{0.2, 0.4, 0.9}, gold{0.9, 0.7, 0.2};
+  const kernels::TransferFunction transfer(
+      {{0.2, {0, blue}}, {0.4, {0.2, blue}}, {0.7, {0.2, blue}}, {0.75, {0.45, gold}}, {1, {0.45, gold}}});
+  return kernels::grid_splats(kernels::concentric_shells(n, 3), transfer, 1,
+                              flat ? kernels::Flattening{0.72, 1.0} : kernels::Flattening{});
+}
+
+kernels::View view_of_shells(int size) {
+  return kernels::look_at({1.5, -2.2, 3.4}, {0, 0, 0}, {0, 1, 0}, 30, size, size, 1, 10);
+}
+
+NumberFormats exact_formats() {
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  formats.color = ColorFormat::float32;
+  formats.subpixel_bits = 8;
+  return formats;
+}
+
+constexpr VolumeTraceSettings kExact{.texture_length = 2048, .texture_bits = 16, .float_colors = true};
+
+// dB of r, g and b against the reference's, over the pixels that the volume covers.
+double psnr(const Frame& frame, const kernels::VolumePicture& reference) {
+  double squares = 0, samples = 0;
+  for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
+    if (reference.pixels[i].w < 0.5 / 255) continue;
+    samples += 3;
+    const Vec4 color = frame.color(i);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double difference = static_cast<double>(color[c]) - reference.pixels[i][static_cast<int>(c)];
+      squares += difference * difference;
+    }
+  }
+  return -10 * std::log10(squares / samples);
+}
+
+Frame drawn(const Trace& trace, const NumberFormats& formats) {
+  RenderOptions options;
+  options.formats = formats;
+  options.record_work = false;
+  return render(trace, options).frame;
+}
+
+TEST(VolumeTrace, picture_is_that_of_the_software_with_the_same_sheets) {
+  const kernels::View view = view_of_shells(128);
+  for (const bool flat : {false, true}) {
+    const VolumeSplats splats = shells(40, flat);
+    const kernels::VolumePicture reference =
+        kernels::volume_picture(view, splats, {.cutoff = kExact.cutoff, .light = kExact.light});
+    const VolumeTrace exact = volume_trace(view, splats, kExact);
+    EXPECT_EQ(exact.splats + exact.left_out, splats.splats.size());
+    EXPECT_EQ(exact.flat > 0, flat);
+    const double in_float = psnr(drawn(exact.trace, exact_formats()), reference);
+    const double in_8_bits = psnr(drawn(volume_trace(view, splats, {}).trace, {}), reference);
+    std::printf("%s: %.1f dB in float, %.1f dB in 8 bits\n", flat ? "flat" : "grid", in_float, in_8_bits);
+    EXPECT_GT(in_float, 50);
+    EXPECT_GT(in_8_bits, 30);
+  }
+}
+
+// The general program draws what the one for grids does.
+TEST(VolumeTrace, both_programs_draw_the_same) {
+  const kernels::View view = view_of_shells(96);
+  const VolumeSplats splats = shells(24, false);
+  VolumeTraceSettings settings = kExact;
+  const VolumeTrace shared = volume_trace(view, splats, settings);
+  settings.shared_variance = false;
+  const VolumeTrace own = volume_trace(view, splats, settings);
+  EXPECT_EQ(shared.flat, 0u);
+  EXPECT_EQ(own.flat, own.splats);
+  EXPECT_GT(own.vertex_bytes, 2 * shared.vertex_bytes);
+  const Frame a = drawn(shared.trace, exact_formats()), b = drawn(own.trace, exact_formats());
+  for (std::size_t i = 0; i < 96 * 96; ++i) {
+    // A fragment at a splat's edge may fall to one side or the other: exp(-2) of a splat of 0.05.
+    for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(a.color(i)[c], b.color(i)[c], 0.02) << i;
+  }
+}
+
+// What a file holds is what is drawn; it keeps every rule of trace files.
+TEST(VolumeTrace, is_a_trace_file) {
+  const VolumeTrace recorded = volume_trace(view_of_shells(64), shells(16, true), {});
+  EXPECT_NO_THROW(check_trace(recorded.trace, "volume"));
+  EXPECT_EQ(recorded.trace.surfaces, 1u);
+  EXPECT_GT(recorded.sheets, 10u);
+}
+
+TEST(VolumeTrace, a_volume_out_of_sight_is_a_clear_frame) {
+  const kernels::View view = kernels::look_at({0, 0, 5}, {0, 0, 10}, {0, 1, 0}, 30, 32, 32, 1, 10);
+  const VolumeTrace recorded = volume_trace(view, shells(8, false), {});
+  EXPECT_EQ(recorded.splats, 0u);
+  EXPECT_NO_THROW(check_trace(recorded.trace, "volume"));
+  const Frame frame = drawn(recorded.trace, {});
+  for (std::size_t i = 0; i < 32 * 32; ++i) EXPECT_EQ(frame.color(i)[3], 0);
+}
+
+}  // namespace
+}  // namespace splatscope::traces
