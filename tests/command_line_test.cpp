@@ -36,6 +36,7 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
                                                           {"shader", "run"},
                                                           {"sample"},
                                                           {"explain"},
+                                                          {"volume"},
                                                           {"study"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "model/error.h"
-#include "model/input_file.h"
 #include "traces/gamma.h"
-#include "traces/ready_scenes.h"
 #include "traces/scene_settings.h"
+#include "traces/scene_text.h"
 #include "traces/surfels.h"
 
 namespace splatscope::traces {
@@ -27,6 +26,10 @@ std::string listed(std::initializer_list<std::pair<std::size_t, std::string_view
 Scene parse_scene(std::string_view text, const std::filesystem::path& file,
                   const std::function<void(double)>& progress) {
   SceneSettings settings = parse_settings(text, file.string());
+  if (settings.volume_line > 0) {
+    throw UserError(file.string(), settings.volume_line,
+                    "[volume] is drawn by `splatscope volume`, expected a scene of surfels");
+  }
   Scene scene;
   scene.name = file.stem().string();
   scene.frame = {settings.width, settings.height};
@@ -49,23 +52,10 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
 }
 
 Scene load_scene(const std::filesystem::path& name_or_path, const std::function<void(double)>& progress) {
-  std::error_code error;
-  if (!std::filesystem::exists(name_or_path, error)) {
-    for (const EmbeddedFile& ready : ready_scenes()) {
-      const std::filesystem::path file(ready.name);
-      if (name_or_path == file || name_or_path == file.stem()) return parse_scene(ready.text, file, progress);
-    }
-    std::string names;
-    for (const EmbeddedFile& ready : ready_scenes())
-      names +=
-          fmt::format("{}{}", names.empty() ? "" : ", ", std::filesystem::path(ready.name).stem().string());
-    throw UserError(
-        name_or_path.string(), 0,
-        fmt::format("no such file, expected a scene file or the name of a ready scene: {}", names));
-  }
-  Scene scene = parse_scene(read_text_file(name_or_path, "a scene file"), name_or_path, progress);
+  const SceneText text = read_scene_text(name_or_path);
+  Scene scene = parse_scene(text.text, text.file, progress);
   if (scene.surfels.empty() && scene.skipped.total() > 0)
-    throw UserError(name_or_path.string(), 0,
+    throw UserError(text.file.string(), 0,
                     fmt::format("none of its surfels can be drawn: {}, expected at least one that can",
                                 describe(scene.skipped)));
   return scene;

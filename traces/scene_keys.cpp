@@ -172,7 +172,12 @@ std::string quoted_list(const std::vector<std::string_view>& names) {
 }  // namespace
 
 std::span<const SceneKey> scene_keys() {
-  return kKeys;
+  static const std::vector<SceneKey> kAll = [] {
+    std::vector<SceneKey> keys(kKeys.begin(), kKeys.end());
+    keys.insert(keys.end(), volume_keys().begin(), volume_keys().end());
+    return keys;
+  }();
+  return kAll;
 }
 
 std::string expectation(const SceneKey& key) {
@@ -185,6 +190,10 @@ std::string expectation(const SceneKey& key) {
           [](const ChoiceValue& v) { return (v.names.size() > 1 ? "one of " : "") + quoted_list(v.names); },
           [](const VectorValue& v) {
             return fmt::format("an array of three numbers from {:g} to {:g}", v.min, v.max);
+          },
+          [](const TransferValue&) {
+            return std::string(
+                "an array of { value, opacity, color }, values rising, opacity and color from 0 to 1");
           }},
       key.value);
 }
@@ -198,7 +207,8 @@ std::string default_text(const SceneKey& key) {
                  [](const ChoiceValue& v) { return fmt::format("\"{}\"", v.names[std::size_t(v.initial)]); },
                  [](const VectorValue& v) {
                    return fmt::format("[{:g}, {:g}, {:g}]", v.initial.x, v.initial.y, v.initial.z);
-                 }},
+                 },
+                 [](const TransferValue&) { return std::string("[]"); }},
       key.value);
 }
 
@@ -215,6 +225,7 @@ SceneSettings default_settings() {
   for (const SceneKey& key : scene_keys()) {
     std::visit(Overloaded{[&](const ChoiceValue& v) { v.store(settings, v.initial); },
                           [&](const TextValue& v) { v.place(settings) = std::string(v.initial); },
+                          [&](const TransferValue& v) { v.place(settings).clear(); },
                           [&](const auto& v) { v.place(settings) = v.initial; }},
                key.value);
   }

@@ -9,6 +9,7 @@
 #include "traces/framing.h"
 #include "traces/models/patterns.h"
 #include "traces/scene.h"
+#include "traces/volumes/volume_keys.h"
 
 // Every key of a scene file, declared once: parsing, error messages and the documentation come from it.
 namespace splatscope::traces {
@@ -45,6 +46,8 @@ struct SceneSettings {
   Capture capture;
   Hierarchy hierarchy;
   double depth_offset = 0;  // 0: the average spacing
+  VolumeKeys volume;
+  int volume_line = 0;  // of [volume]; 0: none
 };
 
 // Each kind of value finds its place in the settings, and knows its default and range.
@@ -77,15 +80,21 @@ struct VectorValue {  // three numbers
   double min, max;  // of each number, both allowed
 };
 
+struct TransferValue {  // { value, opacity, color } each, values rising; none by default
+  std::vector<kernels::TransferPoint>& (*place)(SceneSettings&);
+};
+
 struct SceneKey {
   std::string_view table;
   std::string_view name;
   std::string_view unit;
   std::string_view description;
-  std::variant<RealValue, IntegerValue, BooleanValue, TextValue, ChoiceValue, VectorValue> value;
+  std::variant<RealValue, IntegerValue, BooleanValue, TextValue, ChoiceValue, VectorValue, TransferValue>
+      value;
 };
 
 std::span<const SceneKey> scene_keys();
+std::span<const SceneKey> volume_keys();  // those of [volume], which are among them
 
 // "a number from 0 to 10", for messages and documentation.
 std::string expectation(const SceneKey& key);

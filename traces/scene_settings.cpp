@@ -48,14 +48,40 @@ struct Store {
     v.store(settings, static_cast<int>(found - v.names.begin()));
     return true;
   }
-  bool operator()(const VectorValue& v) const {
-    const toml::array* numbers = node.as_array();
+  bool operator()(const TransferValue& v) const {
+    const toml::array* points = node.as_array();
+    if (!points) return false;
+    std::vector<kernels::TransferPoint>& place = v.place(settings);
+    for (const toml::node& entry : *points) {
+      const toml::table* point = entry.as_table();
+      if (!point || point->size() != 3) return false;
+      place.emplace_back();
+      if (!number(*point, "value", -1e30, 1e30, place.back().value) ||
+          !number(*point, "opacity", 0, 1, place.back().look.opacity) ||
+          !numbers(point->get("color"), 0, 1, place.back().look.color)) {
+        return false;
+      }
+    }
+    return std::ranges::is_sorted(place, {}, &kernels::TransferPoint::value);
+  }
+  bool operator()(const VectorValue& v) const { return numbers(&node, v.min, v.max, v.place(settings)); }
+
+ private:
+  static bool number(const toml::table& table, std::string_view name, double min, double max, double& out) {
+    const toml::node* found = table.get(name);
+    const auto value = found && found->is_number() ? found->value<double>() : std::nullopt;
+    if (!value || !(*value >= min && *value <= max)) return false;
+    out = *value;
+    return true;
+  }
+  static bool numbers(const toml::node* node, double min, double max, glm::dvec3& out) {
+    const toml::array* numbers = node ? node->as_array() : nullptr;
     if (!numbers || numbers->size() != 3) return false;
     for (std::size_t i = 0; i < 3; ++i) {
       const toml::node& number = *numbers->get(i);
       const auto value = number.is_number() ? number.value<double>() : std::nullopt;
-      if (!value || !(*value >= v.min && *value <= v.max)) return false;
-      v.place(settings)[static_cast<glm::length_t>(i)] = *value;
+      if (!value || !(*value >= min && *value <= max)) return false;
+      out[static_cast<glm::length_t>(i)] = *value;
     }
     return true;
   }
@@ -132,6 +158,16 @@ void check_capture(const Capture& capture, const toml::table& root, std::string_
   }
 }
 
+// A volume has no use for the tables of surfels.
+void check_volume_alone(const toml::table& root, std::string_view file) {
+  for (const auto& [name, node] : root) {
+    if (name.str() == "volume" || name.str() == "camera" || name.str() == "frame") continue;
+    throw UserError(
+        file, line(name),
+        fmt::format("[{}] beside [volume], expected [camera], [frame] and [volume] alone", name.str()));
+  }
+}
+
 }  // namespace
 
 void check_camera(const SceneSettings& settings, std::string_view file) {
@@ -165,7 +201,12 @@ SceneSettings parse_settings(std::string_view text, std::string_view file) {
     settings.camera_given = keys_given(*camera);
     settings.camera_line = line(*camera);
   }
-  if (is_plane(settings.surfels)) check_camera(settings, file);
+  if (const toml::table* volume = root["volume"].as_table()) {
+    settings.volume_line = line(*volume);
+    check_volume_alone(root, file);
+  } else if (is_plane(settings.surfels)) {
+    check_camera(settings, file);
+  }
   const Splatting& splatting = settings.splatting;
   if (splatting.refine && splatting.algorithm != Algorithm::ewa_per_surfel) {
     throw UserError(file, 0,

@@ -80,8 +80,10 @@ double head(glm::dvec3 p) {
   const double face = in({0, -0.40, -0.30}, {0.46, 0.38, 0.40});
   bone = std::max(bone, std::min(face, 1 - in({0, -0.20, -0.40}, {0.34, 0.40, 0.32})));
   bone = std::max(bone, in({0.46, -0.42, -0.26}, {0.14, 0.22, 0.06}));
-  const double jaw =
-      std::min(in({0, -0.25, -0.72}, {0.46, 0.54, 0.22}), 1 - in({0, -0.18, -0.68}, {0.38, 0.50, 0.30}));
+  double jaw =
+      std::min(in({0, -0.28, -0.72}, {0.38, 0.50, 0.17}), 1 - in({0, -0.16, -0.68}, {0.32, 0.48, 0.25}));
+  jaw = std::min(jaw, std::clamp((0.05 - q.y) / kRim, 0.0, 1.0));  // open behind
+  jaw = std::max(jaw, in({0.35, -0.02, -0.47}, {0.045, 0.13, 0.32}));
   bone = std::max(bone, jaw);
   bone = std::max(
       bone, std::min(in({0, 0.22, -0.8}, {0.15, 0.15, 0.7}), 0.75 + 0.25 * std::cos(p.z * 2 * kPi / 0.13)));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,19 +14,20 @@
 
 namespace splatscope::kernels {
 
-// The axis most parallel to the line of sight, and whether its last sheet is the nearest.
+// The axis of the sheets, and whether the last of them is the nearest.
 struct SheetAxis {
   int axis = 0;
   bool last_is_nearest = false;
 };
 
-inline SheetAxis sheet_axis(const View& view) {
+// `given`, or the axis most parallel to the line of sight.
+inline SheetAxis sheet_axis(const View& view, std::optional<int> given) {
   // Camera z grows along each object axis by the third row of W.
   SheetAxis result;
   double most = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double slope = view.object_to_camera[axis][2];
-    if (std::abs(slope) <= most) continue;
+    if (given ? axis != *given : std::abs(slope) <= most) continue;
     most = std::abs(slope);
     result = {axis, slope < 0};
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
 #include "kernels/reference/volume/footprint.h"
@@ -28,6 +29,8 @@ struct VolumeSettings {
   // to 0.25%; at 4 to 10%.
   double cutoff = 11;
   PhongLight light{};
+  // Of the sheets: 0 x, 1 y, 2 z; else the one most parallel to the line of sight.
+  std::optional<int> axis{};
 };
 
 struct VolumePicture {

@@ -1,0 +1,70 @@
+#include "studies/volume_run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "kernels/reference/volume/fast_volume.h"
+#include "studies/image_io.h"
+#include "studies/volume_pictures.h"
+#include "traces/output_files.h"
+
+namespace splatscope::studies {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+kernels::FastVolumePicture in_single(const kernels::VolumePicture& exact) {
+  kernels::FastVolumePicture picture{exact.width, exact.height, {}, exact.left_out, exact.sheets};
+  picture.pixels.assign(exact.pixels.begin(), exact.pixels.end());
+  return picture;
+}
+
+}  // namespace
+
+std::string run_volume(const traces::VolumeScene& scene, Precision precision,
+                       const std::filesystem::path& folder) {
+  traces::prepare_output_folder(folder);
+  const auto start = Clock::now();
+  kernels::FastVolume volume(scene.splats());
+  const double classify_seconds = seconds_since(start);
+  const std::size_t splats = volume.splats().splats.size(), empty = volume.splats().empty;
+  const auto frame_start = Clock::now();
+  const std::clock_t processor_start = std::clock();
+  const kernels::FastVolumePicture picture =
+      precision == Precision::single_precision
+          ? volume.draw(scene.view, scene.settings)
+          : in_single(volume_picture(scene.view, volume.splats(), scene.settings));
+  const double frame_seconds = seconds_since(frame_start);
+  const double processor_seconds =
+      static_cast<double>(std::clock() - processor_start) / static_cast<double>(CLOCKS_PER_SEC);
+  const Image image = picture_of(picture, scene.background);
+  write_png(image, folder / "frame.png");
+  write_exr(image, folder / "frame.exr");
+  const glm::ivec3 size = scene.volume.size;
+  const nlohmann::ordered_json results = {{"volume", {{"size", {size.x, size.y, size.z}}, {"empty", empty}}},
+                                          {"splats", splats},
+                                          {"left_out", picture.left_out},
+                                          {"sheets", picture.sheets},
+                                          {"host",
+                                           {{"classify_seconds", classify_seconds},
+                                            {"frame_seconds", frame_seconds},
+                                            {"frame_processor_seconds", processor_seconds}}}};
+  traces::write_file(folder / "results.json", results.dump(2) + "\n");
+  return fmt::format(
+      "{}: {} x {} x {} voxels, {} of them empty\n"
+      "{} splats in {} sheets, {} left out\n"
+      "{} x {} pixels: {:.2f} s a frame, {:.2f} s of processor time; {:.2f} s before it to classify the "
+      "voxels\n"
+      "{}\n",
+      scene.name, size.x, size.y, size.z, empty, splats, picture.sheets, picture.left_out, picture.width,
+      picture.height, frame_seconds, processor_seconds, classify_seconds, (folder / "frame.png").string());
+}
+
+}  // namespace splatscope::studies

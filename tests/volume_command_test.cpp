@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+#include "studies/image_io.h"
+
+namespace splatscope::tests {
+namespace {
+
+constexpr const char* kHead =
+    "[volume]\ngenerator = \"head\"\nvoxels = [24, 24, 10]\nsurface_low = 0.6\nsurface_high = 1\n"
+    "[frame]\nwidth = 48\nheight = 40\n";
+
+TEST(VolumeCommand, DrawsAVolumeInEitherPrecision) {
+  const ScratchFolder folder;
+  folder.file("head.toml", kHead);
+  studies::Image pictures[2];
+  for (const std::string precision : {"single", "double"}) {
+    const Outcome outcome =
+        run_program({"volume", "head.toml", "--precision", precision, "--out", precision}, folder.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    const auto out = folder.path() / precision;
+    const auto results = nlohmann::json::parse(text_of(out / "results.json"));
+    EXPECT_EQ(results["volume"]["size"], nlohmann::json({24, 24, 10}));
+    const std::size_t splats = results["splats"], empty = results["volume"]["empty"];
+    EXPECT_GT(splats, 500u);
+    EXPECT_EQ(splats + empty, 24u * 24 * 10);
+    pictures[precision == "double"] = studies::read_image(out / "frame.exr");
+    EXPECT_TRUE(std::filesystem::exists(out / "frame.png"));
+  }
+  EXPECT_GT(studies::psnr(pictures[0], pictures[1]), 50);  // the step of the table: kernels/reference/volume
+}
+
+TEST(VolumeCommand, RefusesWhatIsNoVolume) {
+  const ScratchFolder folder;
+  folder.file("plane.toml", "[surfels]\n");
+  folder.file("head.toml", kHead);
+  folder.file("nan.toml", "[volume]\nfile = \"a.nrrd\"\n");
+  folder.file("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 9 9\n");
+  const auto refused = [&](const std::vector<std::string>& arguments) {
+    const Outcome outcome = run_program(arguments, folder.path());
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+    return outcome.error;
+  };
+  EXPECT_EQ(refused({"volume", "plane.toml"}),
+            "plane.toml: has no [volume], expected a scene with a volume\n");
+  EXPECT_EQ(refused({"volume", "nan.toml"}), "a.nrrd:4: 2 sizes, expected three\n");
+  EXPECT_EQ(refused({"run", "head.toml", "--fidelity", "functional"}),
+            "head.toml:1: [volume] is drawn by `splatscope volume`, expected a scene of surfels\n");
+}
+
+}  // namespace
+}  // namespace splatscope::tests

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "kernels/reference/volume/volume.h"
+
+namespace splatscope::traces {
+
+// Reads a volume from a NRRD file: raw encoding, three dimensions, integers of 8 to 32 bits and floats of 32
+// and 64; header and data in one file, or a header (.nhdr) that names a raw file beside it. The volume's
+// middle becomes the object space's origin. Throws UserError: "file:line: ..." for the header
+// (nrrd_header.h); "file: ..." where data are missing, too few, or not finite, with the voxel. Nothing is
+// allocated before the sizes agree with the file's.
+kernels::Volume read_nrrd(const std::filesystem::path& path);
+
+}  // namespace splatscope::traces

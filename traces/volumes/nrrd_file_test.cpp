@@ -1,0 +1,157 @@
+#include "traces/volumes/nrrd_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "model/error.h"
+
+namespace splatscope::traces {
+namespace {
+
+class NrrdFile : public ::testing::Test {
+ protected:
+  NrrdFile()
+      : folder_(std::filesystem::temp_directory_path() / ("splatscope-nrrd-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~NrrdFile() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+  // What is said of a wrong file, without its folder.
+  std::string error_of(const std::string& bytes) const {
+    try {
+      read_nrrd(write("a.nrrd", bytes));
+    } catch (const UserError& error) {
+      return std::string(error.what()).substr(folder_.string().size() + 1);
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_;
+};
+
+std::string header(const std::string& type, const std::string& sizes, const std::string& more = "") {
+  return "NRRD0004\n# a comment\ntype: " + type + "\ndimension: 3\nsizes: " + sizes +
+         "\nencoding: raw\nendian: little\nname:=value\n" + more + "\n";
+}
+
+template <class Value>
+std::string bytes_of_values(std::initializer_list<Value> values, bool swap = false) {
+  std::string bytes;
+  for (const Value value : values) {
+    char text[sizeof(Value)];
+    std::memcpy(text, &value, sizeof(Value));
+    if (swap) std::reverse(text, text + sizeof(Value));
+    bytes.append(text, sizeof(Value));
+  }
+  return bytes;
+}
+
+TEST_F(NrrdFile, ReadsEachTypeInEitherOrderOfBytes) {
+  const kernels::Volume bytes = read_nrrd(
+      write("a.nrrd", header("uchar", "3 1 2", "spacings: 1 0.5 2\n") + std::string("\1\2\3\4\5\377", 6)));
+  EXPECT_EQ(bytes.size, glm::ivec3(3, 1, 2));
+  EXPECT_EQ(bytes.spacing, glm::dvec3(1, 0.5, 2));
+  EXPECT_EQ(bytes.center(), glm::dvec3(0));
+  EXPECT_EQ(bytes.values, (std::vector<float>{1, 2, 3, 4, 5, 255}));
+  const kernels::Volume shorts =
+      read_nrrd(write("b.nrrd", header("short", "2 1 1", "space directions: (0,2,0) (3,0,4) (1,0,0)\n") +
+                                    bytes_of_values<std::int16_t>({-1024, 3033})));
+  EXPECT_EQ(shorts.values, (std::vector<float>{-1024, 3033}));
+  EXPECT_EQ(shorts.spacing, glm::dvec3(2, 5, 1));
+  const std::string big = "NRRD0001\ntype: float\ndimension: 3\nsizes: 1 2 1\nencoding: raw\nendian: big\n\n";
+  EXPECT_EQ(read_nrrd(write("c.nrrd", big + bytes_of_values<float>({0.5f, -2e9f}, true))).values,
+            (std::vector<float>{0.5f, -2e9f}));
+  EXPECT_EQ(read_nrrd(write("d.nrrd", header("double", "1 1 1") + bytes_of_values<double>({0.25}))).values,
+            (std::vector<float>{0.25f}));
+}
+
+TEST_F(NrrdFile, ReadsRawDataBesideAHeader) {
+  write("a.raw", "skip\1\2");
+  const auto path = write("a.nhdr", header("uint8", "2 1 1", "data file: a.raw\nbyte skip: 4\n"));
+  EXPECT_EQ(read_nrrd(path).values, (std::vector<float>{1, 2}));
+  EXPECT_EQ(error_of(header("uint8", "2 1 1", "data file: b.raw\n")),
+            "b.raw: cannot be read, expected the raw data that the header names");
+}
+
+TEST_F(NrrdFile, NamesTheLineOfWhatIsWrong) {
+  EXPECT_EQ(error_of("PLY\n"), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
+  EXPECT_EQ(error_of(""), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
+  EXPECT_EQ(
+      error_of(header("block", "1 1 1")),
+      "a.nrrd:3: type is \"block\", expected int8, uint8, int16, uint16, int32, uint32, float or double");
+  EXPECT_EQ(error_of(header("int8|uint8", "1 1 1")).substr(0, 12), "a.nrrd:3: ty");
+  EXPECT_EQ(error_of(header("uint8", "1 1")), "a.nrrd:5: 2 sizes, expected three");
+  EXPECT_EQ(error_of(header("uint8", "1 0 1")),
+            "a.nrrd:5: a size of \"0\", expected a whole number from 1 to 32768");
+  EXPECT_EQ(error_of(header("uint8", "1 99999999999999999999 1")),
+            "a.nrrd:5: a size of \"99999999999999999999\", expected a whole number from 1 to 32768");
+  EXPECT_EQ(error_of(header("uint8", "32768 32768 32768")),
+            "a.nrrd:5: 35184372088832 voxels, expected at most 536870912");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "spacings: 1 nan 1\n")),
+            "a.nrrd:9: a spacing of \"nan\", expected a number from 1e-9 to 1e9");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "sizes: 1 1 1\n")),
+            "a.nrrd:9: \"sizes\" for the second time, expected it once, as in line 5");
+  EXPECT_EQ(error_of("NRRD0004\ntype: uint8\nencoding: gzip\n"),
+            "a.nrrd:3: encoding is \"gzip\", expected raw (unu save -e raw converts)");
+  EXPECT_EQ(error_of("NRRD0004\ntype: uint8\n\n"),
+            "a.nrrd:3: the header ends without \"dimension\", expected that field");
+  EXPECT_EQ(error_of("NRRD0004\n" + std::string(2000, 'x')),
+            "a.nrrd:2: a line of more than 1024 characters, expected a NRRD header");
+  EXPECT_EQ(error_of("NRRD0004\ntype: short\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n\nab"),
+            "a.nrrd:6: the header ends without \"endian\", expected big or little for this type");
+}
+
+TEST_F(NrrdFile, RefusesTooFewDataBeforeItMakesRoomForThem) {
+  EXPECT_EQ(error_of(header("double", "32768 16384 1") + "few"),
+            "a.nrrd: 3 bytes of data, expected 4294967296 for 32768 x 16384 x 1 voxels of 8 bytes");
+  EXPECT_EQ(error_of(header("uint8", "2 1 1", "byte skip: 4294967295\n") + "ab"),
+            "a.nrrd: 0 bytes of data, expected 2 for 2 x 1 x 1 voxels of 1 bytes");
+}
+
+TEST_F(NrrdFile, NamesTheVoxelThatIsNotFinite) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(error_of(header("float", "2 2 2") + bytes_of_values<float>({0, 1, 2, 3, 4, 5, nan, 7})),
+            "a.nrrd: voxel (0, 1, 1) is nan, expected finite values in single precision");
+  EXPECT_EQ(error_of(header("double", "1 1 1") + bytes_of_values<double>({1e300})),
+            "a.nrrd: voxel (0, 0, 0) is inf, expected finite values in single precision");
+}
+
+// Bytes changed at random: an error or a volume, and nothing else.
+TEST_F(NrrdFile, DamagedHeadersAreReadOrRefused) {
+  constexpr unsigned kSeed = 11;
+  SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+  std::mt19937 random(kSeed);
+  const std::string good =
+      header("float", "2 2 2", "spacings: 1 1 2\nbyte skip: 3\n") + "abc" + std::string(32, '\0');
+  int read = 0, refused = 0;
+  for (int i = 0; i < 500; ++i) {
+    std::string bytes = good;
+    for (int changes = 0; changes < 3; ++changes) {
+      bytes[random() % bytes.size()] = static_cast<char>(random() % 2 ? random() % 256 : '0' + random() % 12);
+    }
+    if (random() % 4 == 0) bytes.resize(random() % bytes.size());
+    try {
+      read_nrrd(write("a.nrrd", bytes));
+      ++read;
+    } catch (const UserError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(read, 25);
+  EXPECT_GT(refused, 25);
+}
+
+}  // namespace
+}  // namespace splatscope::traces

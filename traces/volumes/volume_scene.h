@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+
+#include "kernels/reference/volume/transfer_function.h"
+#include "kernels/reference/volume/volume.h"
+#include "kernels/reference/volume/volume_rendering.h"
+#include "kernels/reference/volume/volume_splats.h"
+#include "kernels/view.h"
+
+namespace splatscope::traces {
+
+// What a user wants drawn of a volume: a scene file with [volume].
+struct VolumeScene {
+  std::string name;  // the scene file's name without folder and ending
+  kernels::Volume volume;
+  kernels::TransferFunction transfer;
+  double kernel_variance = 1;
+  kernels::Flattening flattening;
+  kernels::View view;
+  kernels::VolumeSettings settings;
+  glm::dvec3 background{};
+
+  kernels::VolumeSplats splats() const { return grid_splats(volume, transfer, kernel_variance, flattening); }
+};
+
+// Reads a scene file with [volume], or a ready scene by its name. What the file leaves open of the camera is
+// chosen to frame the volume's box (framing.h). Throws UserError as load_scene and read_nrrd do, and where
+// there is no [volume].
+VolumeScene load_volume_scene(const std::filesystem::path& name_or_path);
+
+// The same from text; `file` is for messages and for finding the volume's file.
+VolumeScene parse_volume_scene(std::string_view text, const std::filesystem::path& file);
+
+}  // namespace splatscope::traces
