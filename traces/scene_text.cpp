@@ -9,7 +9,8 @@
 namespace splatscope::traces {
 SceneText read_scene_text(const std::filesystem::path& name_or_path) {
   std::error_code error;
-  if (std::filesystem::exists(name_or_path, error)) return {read_text_file(name_or_path, "a scene file"), name_or_path};
+  if (std::filesystem::exists(name_or_path, error))
+    return {read_text_file(name_or_path, "a scene file"), name_or_path};
   std::string names;
   for (const EmbeddedFile& ready : ready_scenes()) {
     const std::filesystem::path file(ready.name);

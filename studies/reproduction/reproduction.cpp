@@ -7,6 +7,7 @@
 #include "studies/reproduction/table1.h"
 #include "studies/reproduction/table2.h"
 #include "studies/reproduction/zwicker_surfaces.h"
+#include "studies/reproduction/zwicker_volumes.h"
 
 namespace splatscope::studies {
 
@@ -25,6 +26,14 @@ std::span<const Study> reproductions() {
       Study{"fig11", "a checkerboard by the three algorithms", reproduce_figure11},
       Study{"fig12", "models with textures of high frequency: stand-ins, and real ones where they are",
             reproduce_figure12},
+      Study{"zwicker-fig9", "EWA volume splatting: the affine map of a kernel against the exact one",
+            reproduce_zwicker_figure9},
+      Study{"zwicker-fig13", "EWA volume splatting: filters minified, magnified, anisotropic; Swan's",
+            reproduce_zwicker_figure13},
+      Study{"zwicker-fig14", "EWA volume splatting: zebra textures by EWA and by Swan's uniform scaling",
+            reproduce_zwicker_figure14},
+      Study{"zwicker-fig15", "EWA volume splatting: a texture by volume kernels and by surface kernels",
+            reproduce_zwicker_figure15},
       Study{"zwicker-fig17", "surface splatting in software: a head, terrain, a helicopter with glass",
             reproduce_zwicker_figure17},
       Study{"zwicker-table1", "frame rates of software surface splatting", reproduce_zwicker_table1},

@@ -108,6 +108,8 @@ TEST(VolumeRendering, WhatIsNearerHidesWhatIsFurther) {
     EXPECT_NEAR(center[direction % 2 ? 1 : 0], 1, 1e-9) << direction;
     EXPECT_NEAR(center[direction % 2 ? 0 : 1], 0, 1e-9) << direction;
     EXPECT_EQ(picture.sheets, 2u);
+    const int other = (direction / 2 + 1) % 3;
+    EXPECT_EQ(volume_picture(view, splats, {.light = kUnshaded, .axis = other}).sheets, 1u);
   }
 }
 
@@ -184,8 +186,10 @@ TEST(FastVolume, IsThePictureOfTheDoublePrecisionRenderer) {
         // Flat kernels are lines where seen edge-on: without a low-pass, a matter of rounding.
         const bool flat = &splats == &cases[1] || &splats == &cases[4];
         if (flat && prefilter != VolumePrefilter::ewa) continue;
-        const VolumeSettings settings{
-            .projection = projection, .prefilter = prefilter, .light = {.toward_light = {0.6, 0.64, -0.48}}};
+        const VolumeSettings settings{.projection = projection,
+                                      .prefilter = prefilter,
+                                      .light = {.toward_light = {0.6, 0.64, -0.48}},
+                                      .axis = {}};
         const VolumePicture exact = volume_picture(scaled, splats, settings);
         EXPECT_LT(difference(fast.draw(scaled, settings), exact), kTableError)
             << &splats - cases << " " << static_cast<int>(projection) << " " << static_cast<int>(prefilter);
