@@ -114,7 +114,7 @@ class Recorder {
     trace.textures = {kernels::alpha_texture(
         cutoff, settings_.texture_length > 0 ? settings_.texture_length : kernels::optimal_length(cutoff),
         kernels::CutoffShape::circle, settings_.texture_bits)};
-    const kernels::SheetAxis axis = kernels::sheet_axis(view_);
+    const kernels::SheetAxis axis = kernels::sheet_axis(view_, std::nullopt);
     const kernels::SheetOrder order = kernels::sheet_order(splats_, axis.axis);
     const std::size_t sheets = order.first.size() - 1;
     for (std::size_t i = 0; i < sheets; ++i) {

@@ -34,6 +34,15 @@ std::vector<std::string> bad_values(const traces::SceneKey& key) {
           [](const traces::VectorValue&) {
             return Values{"nan",    "[nan, 0, 0]",  "[0, inf, 0]", "[0, 0, 1e300]",
                           "[0, 0]", "[0, 0, 0, 0]", "\"x\""};
+          },
+          [](const traces::TransferValue&) {
+            return Values{"nan",
+                          "\"x\"",
+                          "[0]",
+                          "[{}]",
+                          "[{ value = nan, opacity = 0, color = [0, 0, 0] }]",
+                          "[{ value = 0, opacity = 2, color = [0, 0, 0] }]",
+                          "[{ value = 0, opacity = 0, color = [0, 0] }]"};
           }},
       key.value);
 }
