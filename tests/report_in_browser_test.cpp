@@ -19,6 +19,7 @@ addEventListener("unhandledrejection", (event) => errors.push(String(event.reaso
 constexpr std::string_view kUseThePage = R"(<script>
 addEventListener("load", async () => {
   const saw = { comparisons: 0, zooms: 0 };
+  const clock = setInterval(() => {}, 1);  // or virtual time runs out while a picture is being decoded
   for (const image of document.images) image.closest("details")?.setAttribute("open", "");
   const images = [...document.images].filter((image) => image.hasAttribute("src"));
   saw.images = images.length;
@@ -54,11 +55,13 @@ addEventListener("load", async () => {
   }
   saw.loaded = performance.getEntriesByType("resource").map((entry) => entry.name.slice(0, 80));
   saw.errors = errors;
+  clearInterval(clock);
   document.documentElement.dataset.saw = encodeURIComponent(JSON.stringify(saw));
 });
 </script>)";
 
-// What the script saw of a page in a window `width` pixels wide.
+// What the script saw of a page in a window `width` pixels wide; null where the browser did not wait for its
+// end, which a busy machine may bring about.
 nlohmann::json saw_of(const std::string& page, int width) {
   const ScratchFolder scratch;
   std::string with = page;
@@ -76,7 +79,7 @@ nlohmann::json saw_of(const std::string& page, int width) {
       << text_of(scratch.path() / "log");
   const std::string dom = text_of(scratch.path() / "dom"), attribute = "data-saw=\"";
   const std::size_t begin = dom.find(attribute);
-  if (begin == std::string::npos) return {{"errors", {"the script did not come to its end"}}};
+  if (begin == std::string::npos) return nullptr;
   std::string text;  // percent-encoded
   for (std::size_t i = begin + attribute.size(); dom[i] != '"'; ++i) {
     text += dom[i] == '%' ? static_cast<char>(std::stoi(dom.substr(i + 1, 2), nullptr, 16)) : dom[i];
@@ -87,7 +90,9 @@ nlohmann::json saw_of(const std::string& page, int width) {
 
 void expect_usable(const std::string& page, int images, int comparisons, int zooms) {
   for (const int width : {1280, 360}) {
-    const nlohmann::json saw = saw_of(page, width);
+    nlohmann::json saw;
+    for (int tries = 0; tries < 5 && saw.is_null(); ++tries) saw = saw_of(page, width);
+    ASSERT_FALSE(saw.is_null()) << "the script did not come to its end";
     EXPECT_EQ(nlohmann::json::array(), saw.at("errors"));
     EXPECT_EQ(width, saw.at("width"));
     EXPECT_LE(saw.at("overflow"), 0);

@@ -167,8 +167,8 @@ class VoxelAccuracy : public testing::TestWithParam<std::string_view> {};
 INSTANTIATE_TEST_SUITE_P(Programs, VoxelAccuracy, testing::Values(kVoxelGridProgram, kVoxelProgram),
                          [](const auto& info) { return info.param == kVoxelProgram ? "own" : "shared"; });
 
-// Three times what was measured. A pixel's share of 512 in binary32 is 3e-5; the second pivot is 1/100 of what
-// it is the difference of, and for flat kernels of 50 pixels 1/2500.
+// Three times what was measured. A pixel's share of 512 in binary32 is 3e-5; the second pivot is 1/100 of
+// what it is the difference of, and for flat kernels of 50 pixels 1/2500.
 TEST_P(VoxelAccuracy, voxels_of_a_volume) {
   for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
     const Errors errors = errors_of(GetParam(), arithmetic, 0.05, 10);
