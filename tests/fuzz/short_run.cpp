@@ -1,6 +1,7 @@
-// Stands in for libFuzzer in ordinary builds: every file of the seed corpus, and a number of random mutations
-// of them. Usage: FUZZER CORPUS_FOLDER MUTATIONS [SEED]
+// Stands in for libFuzzer in ordinary builds: every file of the seed corpus, and random mutations of them for
+// some seconds. Usage: FUZZER CORPUS_FOLDER SECONDS [SEED]
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -65,7 +66,7 @@ Input mutated(const std::vector<Input>& corpus, std::mt19937& random) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::cerr << "usage: " << argv[0] << " CORPUS_FOLDER MUTATIONS [SEED]\n";
+    std::cerr << "usage: " << argv[0] << " CORPUS_FOLDER SECONDS [SEED]\n";
     return 2;
   }
   const auto seed =
@@ -75,5 +76,8 @@ int main(int argc, char** argv) {
   const std::vector<Input> corpus = read_corpus(argv[1]);
   if (corpus.empty()) return 1;
   for (const Input& input : corpus) run(input);
-  for (long i = std::strtol(argv[2], nullptr, 10); i > 0; --i) run(mutated(corpus, random));
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(std::atoi(argv[2]));
+  std::size_t runs = 0;
+  for (; std::chrono::steady_clock::now() < end; ++runs) run(mutated(corpus, random));
+  std::cout << runs << " mutations of " << corpus.size() << " inputs\n";
 }
