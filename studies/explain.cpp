@@ -196,19 +196,19 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
       constexpr const char* kNames[] = {"clear", "", "normalise on the host", "present"};
       out += fmt::format("command {}: {}\n", step.command, kNames[static_cast<int>(step.kind)]);
     } else {
-      out += fmt::format("  triangle {}: depth test {}", step.triangle, step.passed ? "passed" : "failed");
-      if (step.passed && step.writes_color) {
-        out += fmt::format("\n    diffuse {}  texel alpha {:.4f}  source {}", text_of(step.diffuse),
+      out += fmt::format("  triangle {}: depth test {}\n", step.triangle, step.passed ? "passed" : "failed");
+      if (!step.passed) continue;
+      if (step.writes_color) {
+        out += fmt::format("    diffuse {}  texel alpha {:.4f}  source {}\n", text_of(step.diffuse),
                            step.texel[3], text_of(step.source));
       }
-      out += '\n';
     }
-    if (!draw || step.passed) {
-      out +=
-          fmt::format("    {}: {} before, {} after; depth {:.7f}\n    in double: {} before, {} after\n",
-                      stored, stored_text(step.before, formats.frame), stored_text(step.after, formats.frame),
-                      step.depth, double_text(step.before_in_double), double_text(step.after_in_double));
+    if (!draw || step.writes_color) {
+      out += fmt::format("    {}: {} before, {} after\n    in double: {} before, {} after\n", stored,
+                         stored_text(step.before, formats.frame), stored_text(step.after, formats.frame),
+                         double_text(step.before_in_double), double_text(step.after_in_double));
     }
+    out += fmt::format("    depth {:.7f}\n", step.depth);
   }
   return out;
 }

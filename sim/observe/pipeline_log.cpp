@@ -10,7 +10,7 @@ namespace splatscope::sim {
 namespace {
 
 // Of a row beside its label: its eight lines, and lines that pass cycles.
-constexpr std::uint64_t kBytesBesideLabel = 192;
+constexpr std::uint64_t kBytesBesideLabel = 144;
 
 }  // namespace
 
@@ -36,16 +36,21 @@ const isa::Program& PipelineLog::program(const VertexUnit& unit) {
   return programs_.emplace(number, isa::load(shader.text, shader.name)).first->second;
 }
 
-std::string PipelineLog::label(const VertexUnit& unit, VertexNumber number, const IssueSlot& slot) {
-  std::string text = unit.name() + " command " + std::to_string(unit.drawing().command) + " vertex " +
-                     std::to_string(number) + ": ";
+const std::string& PipelineLog::text(const VertexUnit& unit, const IssueSlot& slot) {
+  const auto [found, is_new] = texts_.try_emplace(&slot);
+  if (!is_new) return found->second;
   const isa::Program& from = program(unit);
   for (const int place : slot.instructions) {
     if (place < 0) continue;
-    if (text.back() != ' ') text += " + ";
-    text += isa::disassemble(from, from.instructions[static_cast<std::size_t>(place)]);
+    if (!found->second.empty()) found->second += " + ";
+    found->second += isa::disassemble(from, from.instructions[static_cast<std::size_t>(place)]);
   }
-  return text;
+  return found->second;
+}
+
+std::string PipelineLog::label(const VertexUnit& unit, VertexNumber number, const IssueSlot& slot) {
+  return unit.name() + " command " + std::to_string(unit.drawing().command) + " vertex " +
+         std::to_string(number) + ": " + text(unit, slot);
 }
 
 void PipelineLog::taken(const VertexUnit& unit, Cycle now, std::uint64_t vertex, VertexNumber number) {

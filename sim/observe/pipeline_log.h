@@ -61,6 +61,7 @@ class PipelineLog final : public Observer, public IssueWatcher {
   };
 
   std::string label(const VertexUnit& unit, VertexNumber number, const IssueSlot& slot);
+  const std::string& text(const VertexUnit& unit, const IssueSlot& slot);
   const isa::Program& program(const VertexUnit& unit);
   void write_before(Cycle cycle);
   void write(Cycle cycle, const Event& event);
@@ -72,6 +73,7 @@ class PipelineLog final : public Observer, public IssueWatcher {
   const SimulatedMachine* machine_ = nullptr;
   std::vector<VertexUnit*> units_;
   std::map<std::uint32_t, isa::Program> programs_;  // of the trace
+  std::map<const IssueSlot*, std::string> texts_;   // of slots
   std::map<VertexKey, OpenVertex> open_;
   std::multimap<Cycle, Event> waiting_;  // of equal cycles in the order in which they came
   bool is_begun_ = false;

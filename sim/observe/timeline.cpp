@@ -1,6 +1,7 @@
 #include "sim/observe/timeline.h"
 
 #include <algorithm>
+#include <charconv>
 #include <ostream>
 
 #include "sim/machine.h"
@@ -21,9 +22,25 @@ std::string quoted(const std::string& name) {
   return out + '"';
 }
 
+constexpr std::size_t kBufferBytes = 1 << 16;
+constexpr std::size_t kMostDigits = 20;  // of a number
 constexpr std::uint32_t kCommandTrack = 0;
 std::uint32_t track_of(const Unit& unit) {
   return 1 + unit.number();
+}
+
+constexpr std::string_view kSliceMiddle = ",\"dur\":", kCounterHead = ",\n{\"ph\":\"C\",\"pid\":1,\"ts\":";
+
+std::string slice_head(std::uint32_t track) {
+  return ",\n{\"ph\":\"X\",\"pid\":1" + field("tid", track) + ",\"ts\":";
+}
+
+std::string slice_tail(const std::string& name) {
+  return ",\"name\":" + quoted(name) + "}";
+}
+
+std::string counter_middle(const std::string& name, const char* unit) {
+  return ",\"name\":" + quoted(name) + ",\"args\":{\"" + unit + "\":";
 }
 
 std::string track_name(std::uint32_t track, const std::string& name) {
@@ -55,47 +72,68 @@ void Timeline::begin(const SimulatedMachine& machine) {
   out_ << "{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n{\"ph\":\"M\",\"pid\":1,\"name\":\"process_name\","
           "\"args\":{\"name\":\"splatscope (1 us = 1 core cycle)\"}}"
        << track_name(kCommandTrack, "commands");
-  for (const auto& unit : machine.units) out_ << track_name(track_of(*unit), unit->name());
-  for (const auto& channel : machine.channels) channels_.push_back({.name = channel->name()});
+  slice_tails_ = {slice_tail("busy"), slice_tail("starved"), slice_tail("idle")};
+  for (const auto& unit : machine.units) {
+    out_ << track_name(track_of(*unit), unit->name());
+    slice_heads_.push_back(slice_head(track_of(*unit)));
+    slice_tails_.push_back(slice_tail("blocked by " + unit->name()));
+  }
+  for (const auto& channel : machine.channels)
+    channels_.push_back({counter_middle(channel->name(), "items")});
   for (const Unit* memory : machine.memory) {
-    buses_.push_back({.name = memory->name() + " data bus"});
+    buses_.push_back({counter_middle(memory->name() + " data bus", "% busy")});
     data_clocks_.push_back(0);
   }
 }
 
-void Timeline::write(const std::string& event, Cycle at) {
+std::size_t Timeline::append(std::string_view head, std::uint64_t first, std::string_view middle,
+                             std::uint64_t second, std::string_view tail) {
+  const auto number = [this](std::uint64_t value) {
+    char digits[kMostDigits];
+    buffer_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  };
+  const std::size_t before = buffer_.size();
+  buffer_ += head;
+  number(first);
+  buffer_ += middle;
+  number(second);
+  buffer_ += tail;
+  const std::size_t bytes = buffer_.size() - before;
+  if (buffer_.size() >= kBufferBytes) flush();
+  return bytes;
+}
+
+void Timeline::flush() {
+  out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  buffer_.clear();
+}
+
+void Timeline::write(std::string_view head, std::uint64_t first, std::string_view middle,
+                     std::uint64_t second, std::string_view tail, Cycle at) {
   if (cut_at_ != kNever) return;
-  if (bytes_ + event.size() > window_.most_bytes) {
+  if (bytes_ + head.size() + middle.size() + tail.size() + 2 * kMostDigits > window_.most_bytes) {
     cut_at_ = at;
     return;
   }
-  bytes_ += event.size();
-  out_ << event;
+  bytes_ += append(head, first, middle, second, tail);
 }
 
-std::string Timeline::slice(std::uint32_t track, const std::string& name, Cycle from, Cycle until) const {
+// To the window; false where nothing is left.
+bool Timeline::clip(Cycle& from, Cycle& until) const {
   from = std::max(from, window_.first);
   if (until > window_.last) until = window_.last + 1;
-  if (from >= until) return {};
-  return ",\n{\"ph\":\"X\",\"pid\":1" + field("tid", track) + field("ts", from) + field("dur", until - from) +
-         ",\"name\":" + quoted(name) + "}";
+  return from < until;
 }
 
 void Timeline::booked(const Unit& unit, std::uint32_t book, Cycle from, Cycle until) {
-  if (until <= window_.first || from > window_.last || book == Step::kIdle) return;
-  const std::string name = book == Step::kBusy ? "busy"
-                           : book == Step::kStarved
-                               ? "starved"
-                               : "blocked by " + machine_->units[book - Step::kBlocked]->name();
-  write(slice(track_of(unit), name, from, until), from);
+  if (book == Step::kIdle || !clip(from, until)) return;
+  write(slice_heads_[unit.number()], from, kSliceMiddle, until - from, slice_tails_[book], from);
 }
 
-void Timeline::count(Counter& counter, const char* unit, std::uint64_t value, Cycle now) {
+void Timeline::count(Counter& counter, std::uint64_t value, Cycle now) {
   if (value == counter.value) return;
   counter.value = value;
-  write(",\n{\"ph\":\"C\",\"pid\":1" + field("ts", now) + ",\"name\":" + quoted(counter.name) +
-            ",\"args\":{\"" + unit + "\":" + std::to_string(value) + "}}",
-        now);
+  write(kCounterHead, now, counter.middle, value, "}}", now);
 }
 
 Cycle Timeline::sample(Cycle now) {
@@ -103,14 +141,14 @@ Cycle Timeline::sample(Cycle now) {
   for (std::size_t i = 0; i < buses_.size(); ++i) {
     const std::uint64_t clocks = data_clocks(*machine_->memory[i]);
     if (now > sampled_at_ && sampled_at_ >= window_.first) {
-      count(buses_[i], "% busy", 100 * (clocks - data_clocks_[i]) / (now - sampled_at_), now);
+      count(buses_[i], 100 * (clocks - data_clocks_[i]) / (now - sampled_at_), now);
     }
     data_clocks_[i] = clocks;
   }
   sampled_at_ = now;
   if (now < window_.first) return window_.first;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    count(channels_[i], "items", machine_->channels[i]->items(), now);
+    count(channels_[i], machine_->channels[i]->items(), now);
   }
   return now + window_.counter_interval;
 }
@@ -118,9 +156,12 @@ Cycle Timeline::sample(Cycle now) {
 void Timeline::end(const Result& result) {
   Cycle start = 0;
   for (std::size_t i = 0; i < trace_.commands.size(); ++i) {
-    out_ << slice(kCommandTrack, name_of(trace_, i), start, result.command_ends[i]);
+    Cycle from = start, until = result.command_ends[i];
+    if (clip(from, until))
+      append(slice_head(kCommandTrack), from, kSliceMiddle, until - from, slice_tail(name_of(trace_, i)));
     start = result.command_ends[i];
   }
+  flush();
   out_ << "\n]}\n";
 }
 

@@ -2,6 +2,7 @@
 
 #include <iosfwd>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/command/commands.h"
@@ -35,21 +36,30 @@ class Timeline final : public Observer {
 
  private:
   struct Counter {
-    std::string name;
+    std::string middle;       // of its events, between cycle and value
     std::uint64_t value = 0;  // of the last sample
   };
 
-  void write(const std::string& event, Cycle at);
-  std::string slice(std::uint32_t track, const std::string& name, Cycle from, Cycle until) const;
-  void count(Counter& counter, const char* unit, std::uint64_t value, Cycle now);
+  // An event: three pieces of text about two numbers. Returns its bytes.
+  std::size_t append(std::string_view head, std::uint64_t first, std::string_view middle,
+                     std::uint64_t second, std::string_view tail);
+  // The same in the order of the run, as long as there is room; it begins at `at`.
+  void write(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
+             std::string_view tail, Cycle at);
+  bool clip(Cycle& from, Cycle& until) const;
+  void count(Counter& counter, std::uint64_t value, Cycle now);
+  void flush();
 
   std::ostream& out_;
   const Trace& trace_;
   Window window_;
   const SimulatedMachine* machine_ = nullptr;
+  std::vector<std::string> slice_heads_;  // by unit
+  std::vector<std::string> slice_tails_;  // by book
   std::vector<Counter> channels_, buses_;
   std::vector<std::uint64_t> data_clocks_;  // of each memory channel at the last sample
   Cycle sampled_at_ = 0;
+  std::string buffer_;  // not written yet
   std::uint64_t bytes_ = 0;
   Cycle cut_at_ = kNever;
 };
