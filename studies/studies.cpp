@@ -12,6 +12,7 @@
 #include "studies/precision.h"
 #include "studies/software_comparison.h"
 #include "studies/vertex_data.h"
+#include "studies/volume_ripple.h"
 
 namespace splatscope::studies {
 
@@ -35,6 +36,8 @@ std::span<const Study> own_studies() {
       Study{"exploration", "shorter programs, and the hardware that Ren 2002, section 9, wishes for",
             study_exploration},
       Study{"precision", "what each lossy step of the machine costs the picture", study_precision},
+      Study{"volume-ripple", "a volume's layer of constant voxels, by the cutoff of its splats",
+            study_volume_ripple},
       Study{"extremes", "where the formulas of the paper break, and what guards cost", study_extremes},
   };
   return kStudies;

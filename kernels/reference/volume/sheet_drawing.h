@@ -37,8 +37,8 @@ inline SheetAxis sheet_axis(const View& view, std::optional<int> given) {
 inline constexpr std::size_t kSplatsAtOnce = 1 << 15;  // about: they stay in the cache between the two steps
 
 // Draws sheets from back to front, several at a time, so that their projected splats need little memory.
-// `prepare(numbers, splats, rows)` projects the splats of the given numbers into `splats`, where it may leave
-// some out, writes their rows, and returns how many they are; `Splat::sheet` tells the sheets apart.
+// `prepare(numbers, sheets, splats, rows)` projects the splats of the given numbers into `splats`, where it
+// may leave some out, writes their rows, and returns how many they are; `Splat::sheet` is that of `sheets`.
 // `bands[i].add(splats, places)` adds splats to the sheet, `bands[i].composite()` puts it over the picture
 // and clears it. Returns how many splats were drawn.
 template <class Splat, class Band, class Prepare>
