@@ -6,6 +6,7 @@
 #include "studies/reproduction/figure3.h"
 #include "studies/reproduction/table1.h"
 #include "studies/reproduction/table2.h"
+#include "studies/reproduction/zwicker_machine.h"
 #include "studies/reproduction/zwicker_surfaces.h"
 #include "studies/reproduction/zwicker_volumes.h"
 
@@ -34,6 +35,8 @@ std::span<const Study> reproductions() {
             reproduce_zwicker_figure14},
       Study{"zwicker-fig15", "EWA volume splatting: a texture by volume kernels and by surface kernels",
             reproduce_zwicker_figure15},
+      Study{"zwicker-fig16", "a head, an engine and a foot as volumes on both machines",
+            reproduce_zwicker_figure16},
       Study{"zwicker-fig17", "surface splatting in software: a head, terrain, a helicopter with glass",
             reproduce_zwicker_figure17},
       Study{"zwicker-table1", "frame rates of software surface splatting", reproduce_zwicker_table1},
