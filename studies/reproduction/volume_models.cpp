@@ -115,8 +115,8 @@ VolumeModel volume_head(int frame, double scale) {
   VolumeModel model{"head", "ellipsoids for the UNC head", scaled({256, 256, 108}, scale), {}, {}};
   const dvec3 skin(0.9, 0.65, 0.5), bone(0.95, 0.92, 0.85);
   const kernels::TransferFunction transfer({{0.06, {0, skin}},
-                                            {0.12, {0.05, skin}},
-                                            {0.2, {0.05, skin}},
+                                            {0.12, {0.12, skin}},
+                                            {0.2, {0.12, skin}},
                                             {0.24, {0, skin}},
                                             {0.5, {0, bone}},
                                             {0.6, {0.4, bone}},
@@ -130,10 +130,10 @@ VolumeModel volume_engine(int frame, double scale) {
   VolumeModel model{"engine", "boxes and bores for the UNC engine", scaled({256, 256, 110}, scale), {}, {}};
   const dvec3 casing(0.55, 0.65, 0.75), pins(0.95, 0.6, 0.2);
   const kernels::TransferFunction transfer({{0.1, {0, casing}},
-                                            {0.2, {0.1, casing}},
-                                            {0.4, {0.1, casing}},
-                                            {0.5, {0.006, casing}},
-                                            {0.65, {0.006, casing}},
+                                            {0.2, {0.15, casing}},
+                                            {0.4, {0.15, casing}},
+                                            {0.5, {0, casing}},
+                                            {0.65, {0, casing}},
                                             {0.75, {0.4, pins}},
                                             {1.0, {0.4, pins}}});
   const Volume volume = filled(model.size, {2, 2, 2 * 110.0 / 256}, engine);
@@ -146,10 +146,10 @@ VolumeModel volume_foot(int frame, double scale) {
   VolumeModel model{"foot", "capsules for the visible woman's foot", scaled({152, 261, 220}, scale), {}, {}};
   const dvec3 flesh(0.85, 0.5, 0.4), bone(0.95, 0.92, 0.85);
   const kernels::TransferFunction transfer({{0.05, {0, flesh}},
-                                            {0.12, {0.03, flesh}},
-                                            {0.2, {0.03, flesh}},
-                                            {0.28, {0.002, flesh}},
-                                            {0.4, {0.002, flesh}},
+                                            {0.12, {0.12, flesh}},
+                                            {0.2, {0.12, flesh}},
+                                            {0.28, {0, flesh}},
+                                            {0.4, {0, flesh}},
                                             {0.5, {0.4, bone}},
                                             {1.0, {0.45, bone}}});
   const Volume volume = filled(model.size, {2 * 152.0 / 261, 2, 2 * 220.0 / 261}, foot);

@@ -36,7 +36,8 @@ struct VolumeRow {
 // On both machines by `fidelity`, which gives times.
 VolumeRow volume_row(const VolumeModel& model, Fidelity fidelity, const Progress& progress = {});
 
-// One frame format of frame and sheets, all else as on the machine.
+// One format of frame and sheets; in the wider ones the pixel unit's colours are floats, as they would round
+// each contribution to 8 bits. Texture and vertices are as on the machine.
 struct FormatRow {
   FrameFormat format{};
   double psnr = 0;  // dB
