@@ -64,7 +64,7 @@ int run(int argc, const char* const* argv) {
   add_run_command(app, invocation);
   add_study_command(app, invocation);
   add_sweep_command(app, invocation);
-  add_volume_command(app);
+  add_volume_command(app, invocation);
   add_record_command(app, invocation);
   add_sample_command(app, invocation);
   add_machine_command(app);

@@ -23,6 +23,6 @@ void add_shader_command(CLI::App& app);
 void add_study_command(CLI::App& app, Invocation& invocation);
 void add_sweep_command(CLI::App& app, Invocation& invocation);
 void add_trace_command(CLI::App& app);
-void add_volume_command(CLI::App& app);
+void add_volume_command(CLI::App& app, Invocation& invocation);
 
 }  // namespace splatscope::app

@@ -3,11 +3,12 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/progress_bar.h"
 #include "studies/volume_run.h"
 
 namespace splatscope::app {
 
-void add_volume_command(CLI::App& app) {
+void add_volume_command(CLI::App& app, Invocation& invocation) {
   struct Options {
     std::string scene;
     std::string precision = "single";
@@ -24,10 +25,16 @@ void add_volume_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command->footer("Example: splatscope volume volume-head --out out/head");
-  command->callback([options] {
+  command->callback([options, &invocation] {
     const auto precision = options->precision == "single" ? studies::Precision::single_precision
                                                           : studies::Precision::double_precision;
-    std::cout << studies::run_volume(traces::load_volume_scene(options->scene), precision, options->out);
+    const traces::VolumeScene scene = traces::load_volume_scene(options->scene);
+    std::string text;
+    {
+      ProgressBar progress("drawing", invocation.quiet);
+      text = studies::run_volume(scene, precision, options->out, progress.callback());
+    }
+    std::cout << text;
   });
 }
 

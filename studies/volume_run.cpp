@@ -29,7 +29,7 @@ kernels::FastVolumePicture in_single(const kernels::VolumePicture& exact) {
 }  // namespace
 
 std::string run_volume(const traces::VolumeScene& scene, Precision precision,
-                       const std::filesystem::path& folder) {
+                       const std::filesystem::path& folder, const Progress& progress) {
   traces::prepare_output_folder(folder);
   const auto start = Clock::now();
   kernels::FastVolume volume(scene.splats());
@@ -39,8 +39,8 @@ std::string run_volume(const traces::VolumeScene& scene, Precision precision,
   const std::clock_t processor_start = std::clock();
   const kernels::FastVolumePicture picture =
       precision == Precision::single_precision
-          ? volume.draw(scene.view, scene.settings)
-          : in_single(volume_picture(scene.view, volume.splats(), scene.settings));
+          ? volume.draw(scene.view, scene.settings, progress)
+          : in_single(volume_picture(scene.view, volume.splats(), scene.settings, progress));
   const double frame_seconds = seconds_since(frame_start);
   const double processor_seconds =
       static_cast<double>(std::clock() - processor_start) / static_cast<double>(CLOCKS_PER_SEC);

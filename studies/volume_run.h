@@ -4,6 +4,7 @@
 #include <string>
 
 #include "kernels/reference/volume/volume_rendering.h"
+#include "studies/study.h"
 #include "traces/volumes/volume_scene.h"
 
 namespace splatscope::studies {
@@ -16,6 +17,6 @@ enum class Precision {
 // Draws a volume in software and writes frame.png, frame.exr and results.json into the folder. Returns what
 // there is to say, in lines. Throws UserError where the folder cannot be written.
 std::string run_volume(const traces::VolumeScene& scene, Precision precision,
-                       const std::filesystem::path& folder);
+                       const std::filesystem::path& folder, const Progress& progress = {});
 
 }  // namespace splatscope::studies

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "model/error.h"
+#include "model/stop.h"
 #include "traces/volumes/nrrd_header.h"
 
 namespace splatscope::traces {
@@ -98,6 +99,7 @@ kernels::Volume read_nrrd(const std::filesystem::path& path) {
   const bool swap = header.big_endian != (std::endian::native == std::endian::big);
   std::vector<char> bytes(kAtOnce * width);
   for (std::size_t at = 0; at < volume.values.size(); at += kAtOnce) {
+    stop_if_asked();
     const std::size_t count = std::min(kAtOnce, volume.values.size() - at);
     if (!in.read(bytes.data(), static_cast<std::streamsize>(count * width))) {
       throw UserError(data.string(), 0, "cannot be read to its end, expected the voxels' data");

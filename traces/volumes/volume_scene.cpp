@@ -19,7 +19,7 @@ namespace {
 
 constexpr glm::ivec3 kOwnVoxels[] = {
     {64, 64, 64}, {64, 64, 64}, {512, 512, 3}, {128, 128, 54}, {64, 64, 64}};  // by generator
-constexpr double kMostVoxels = 1 << 28;
+constexpr double kMostVoxels = 1 << 26;
 constexpr int kShells = 4;
 constexpr double kZebraPeriod = 0.11;
 

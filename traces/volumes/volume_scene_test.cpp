@@ -72,7 +72,7 @@ TEST(VolumeScene, SaysWhatIsWrong) {
             "a.toml:2: [surfels] beside [volume], expected [camera], [frame] and [volume] alone");
   EXPECT_EQ(
       error_of("[volume]\nvoxels = [4, 4, 5]\n"),
-      "a.toml:1: volume.voxels is [4, 4, 5], expected whole numbers, at most 2.68435e+08 voxels, as many "
+      "a.toml:1: volume.voxels is [4, 4, 5], expected whole numbers, at most 6.71089e+07 voxels, as many "
       "along each axis and at least 2");
   EXPECT_EQ(error_of("[volume]\nlight = [0, 0, 0]\n"),
             "a.toml:1: volume.light is zero, expected a direction");

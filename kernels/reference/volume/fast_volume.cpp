@@ -105,7 +105,8 @@ FastVolume::FastVolume(VolumeSplats splats) : splats_(std::move(splats)) {
   for (const glm::dmat3& kernel : splats_.kernels) kernels_.push_back(fast_variance(kernel));
 }
 
-FastVolumePicture FastVolume::draw(const View& view, const VolumeSettings& settings) {
+FastVolumePicture FastVolume::draw(const View& view, const VolumeSettings& settings,
+                                   const std::function<void(double)>& progress) {
   const FastVolumeView fast = fast_view(view, settings, splats_, flat_);
   const FastTable table(0.5 * settings.cutoff);
   const SpecularTable specular(settings.light.specular, settings.light.shininess);
@@ -116,7 +117,7 @@ FastVolumePicture FastVolume::draw(const View& view, const VolumeSettings& setti
   picture.pixels.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   std::vector<Band> bands = empty_bands(view, table);
   picture.left_out -= draw_sheets<SheetSplat>(
-      view, order, axis.last_is_nearest, bands,
+      view, order, axis.last_is_nearest, bands, progress,
       [&](std::span<const std::uint32_t> numbers, std::span<const std::uint32_t> sheets, SheetSplat* out,
           RowRange* rows) {
         return project_splats(fast, specular, splats_.splats, kernels_, numbers, sheets, out, rows);

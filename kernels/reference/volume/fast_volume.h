@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <glm/vec4.hpp>
 #include <vector>
 
@@ -28,7 +29,8 @@ class FastVolume {
  public:
   explicit FastVolume(VolumeSplats splats);
 
-  FastVolumePicture draw(const View& view, const VolumeSettings& settings);
+  FastVolumePicture draw(const View& view, const VolumeSettings& settings,
+                         const std::function<void(double)>& progress = {});
 
   const VolumeSplats& splats() const { return splats_; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "kernels/reference/row_bands.h"
 #include "kernels/reference/volume/volume_splats.h"
 #include "kernels/view.h"
+#include "model/stop.h"
 
 namespace splatscope::kernels {
 
@@ -40,13 +42,14 @@ inline constexpr std::size_t kSplatsAtOnce = 1 << 15;  // about: they stay in th
 // `prepare(numbers, sheets, splats, rows)` projects the splats of the given numbers into `splats`, where it
 // may leave some out, writes their rows, and returns how many they are; `Splat::sheet` is that of `sheets`.
 // `bands[i].add(splats, places)` adds splats to the sheet, `bands[i].composite()` puts it over the picture
-// and clears it. Returns how many splats were drawn.
+// and clears it. `progress` is told the fraction done. Returns how many splats were drawn.
 template <class Splat, class Band, class Prepare>
 std::size_t draw_sheets(const View& view, const SheetOrder& order, bool last_is_nearest,
-                        std::vector<Band>& bands, const Prepare& prepare) {
+                        std::vector<Band>& bands, const std::function<void(double)>& progress,
+                        const Prepare& prepare) {
   std::vector<Splat> splats;
   std::vector<std::uint32_t> numbers, sheets;
-  std::size_t drawn = 0;
+  std::size_t drawn = 0, done = 0;
   const auto flush = [&] {
     splats.resize(numbers.size() + RowBands::kChunk);
     const RowBands rows(
@@ -56,6 +59,7 @@ std::size_t draw_sheets(const View& view, const SheetOrder& order, bool last_is_
         });
     drawn += rows.kept();
     rows.for_each_band([&](int index) {
+      stop_if_asked();
       Band& band = bands[static_cast<std::size_t>(index)];
       std::uint32_t sheet = 0;
       rows.for_each_run(index, [&](std::span<const std::uint32_t> run) {
@@ -70,6 +74,8 @@ std::size_t draw_sheets(const View& view, const SheetOrder& order, bool last_is_
       });
       band.composite();
     });
+    done += numbers.size();
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(order.splats.size()));
     numbers.clear();
     sheets.clear();
   };

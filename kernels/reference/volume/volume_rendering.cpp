@@ -130,7 +130,8 @@ glm::dvec3 shaded(const PhongLight& light, Projection projection, const glm::dve
   return glm::min(matt * color + shine, 1.0);
 }
 
-VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const VolumeSettings& settings) {
+VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const VolumeSettings& settings,
+                             const std::function<void(double)>& progress) {
   VolumePicture picture{view.width, view.height, {}, splats.splats.size(), 0};
   picture.pixels.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   std::vector<Band> bands;
@@ -142,7 +143,7 @@ VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const
   picture.sheets = order.first.size() - 1;
   const Projector projector(view, splats, settings);
   picture.left_out -=
-      draw_sheets<Projected>(view, order, axis.last_is_nearest, bands,
+      draw_sheets<Projected>(view, order, axis.last_is_nearest, bands, progress,
                              [&](std::span<const std::uint32_t> numbers,
                                  std::span<const std::uint32_t> sheets, Projected* out, RowRange* rows) {
                                std::size_t kept = 0;

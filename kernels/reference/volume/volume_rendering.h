@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
@@ -45,7 +46,8 @@ struct VolumePicture {
 // up: weight by footprint, divided by the part of a Gaussian within the cutoff; opacities above 1 count as 1.
 // The sheets are composited from back to front. A flat kernel's opacity does not grow with the slope of its
 // plane, as a surface's does not. Several threads; the same bits for any number of them.
-VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const VolumeSettings& settings);
+VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const VolumeSettings& settings,
+                             const std::function<void(double)>& progress = {});
 
 // Colour of a splat at `camera` under Phong's model.
 glm::dvec3 shaded(const PhongLight& light, Projection projection, const glm::dvec3& camera,
