@@ -61,13 +61,16 @@ void ClockDomain::visit(Cycle now) {
 }
 
 void ClockDomain::call(std::uint64_t due) {
+  const Cycle at = reference_cycle(now_);
   for (; due != 0; due &= due - 1) {
     const int place = std::countr_zero(due);
     const auto index = static_cast<std::size_t>(place);
     const Step step = units_[index]->advance(now_);
-    const Cycle at = reference_cycle(now_);
-    if (!watches_.empty() && step.book != books_[index].book) tell(index, at);
-    books_[index].enter(step.book, at);
+    Books& books = books_[index];
+    if (step.book != books.book) {
+      if (!watches_.empty()) tell(index, at);
+      books.enter(step.book, at);
+    }
     if (step.next != kNever) wake(place, step.next > now_ ? step.next : now_ + 1);
   }
 }

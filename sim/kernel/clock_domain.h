@@ -26,7 +26,6 @@ struct Books {
   Cycle since = 0;
 
   void enter(std::uint32_t next, Cycle at) {
-    if (next == book) return;
     cycles[book] += at - since;
     book = next;
     since = at;
@@ -71,7 +70,10 @@ class ClockDomain {
   // The next cycle that run() visits: with the referee every one while any domain of the run has something to
   // do.
   Cycle next_visited() const;
-  Femtoseconds next_time() const { return next_visited() == kNever ? kNever : time(next_visited()); }
+  Femtoseconds next_time() const {
+    const Cycle next = next_visited();
+    return next == kNever ? kNever : time(next);
+  }
 
   const std::string& name() const { return name_; }
   Scheduler scheduler() const { return scheduler_; }

@@ -38,6 +38,7 @@ class DomainProcess : public sc_core::sc_module {
     domain_ = domain;
     run_ = run;
     due_.cancel();
+    due_at_ = kNever;
   }
   ClockDomain* domain() const { return domain_; }
   // Asks the kernel for a step at the domain's next cycle, if it has one.
@@ -49,6 +50,7 @@ class DomainProcess : public sc_core::sc_module {
   ClockDomain* domain_ = nullptr;
   Run* run_ = nullptr;
   sc_core::sc_event due_;
+  Femtoseconds due_at_ = kNever;  // what due_ is notified for, since the start of the run
 };
 
 // The modules, elaborated once, and the run that has them now.
@@ -112,14 +114,18 @@ class Run {
 };
 
 void DomainProcess::notify(Femtoseconds start) {
-  if (!domain_ || domain_->next_time() == kNever) return;
+  if (!domain_) return;
+  const Femtoseconds next = domain_->next_time();
+  if (next >= due_at_) return;
+  due_at_ = next;
   const Femtoseconds now = sc_core::sc_time_stamp().value();
-  const Femtoseconds at = start + domain_->next_time();
+  const Femtoseconds at = start + next;
   // A domain that ran ahead may wake the other one in what is SystemC's present: then it is due at once.
   due_.notify(femtoseconds(at > now ? at - now : 0));
 }
 
 void DomainProcess::step() {
+  due_at_ = kNever;
   run_->step(*domain_);
 }
 

@@ -43,18 +43,12 @@ MemoryChannel::Entry MemoryChannel::entry_of(const MemoryRequest& request, std::
           request.write};
 }
 
-// One request a cycle, the clients in turn.
-bool MemoryChannel::accept(Cycle now) {
-  if (queue_.size() >= static_cast<std::size_t>(spec_.schedule_queue)) return false;
-  for (std::size_t i = 0; i < clients_.size(); ++i) {
-    const std::size_t client = turn_ + i < clients_.size() ? turn_ + i : turn_ + i - clients_.size();
-    auto& requests = *clients_[client].requests;
-    if (!requests.can_pop(now)) continue;
-    queue_.push_back(entry_of(requests.pop(now), client));
-    turn_ = client + 1 == clients_.size() ? 0 : client + 1;
-    return true;
-  }
-  return false;
+// One request a cycle, the clients in turn. There is one, and room for it.
+void MemoryChannel::accept(Cycle now) {
+  std::size_t client = turn_;
+  while (!clients_[client].requests->can_pop(now)) client = client + 1 == clients_.size() ? 0 : client + 1;
+  queue_.push_back(entry_of(clients_[client].requests->pop(now), client));
+  turn_ = client + 1 == clients_.size() ? 0 : client + 1;
 }
 
 // The cycle at which the request's first data can be on the bus.
@@ -138,8 +132,12 @@ Cycle MemoryChannel::next_accept() const {
 
 Step MemoryChannel::advance(Cycle now) {
   if (!queue_.empty() && next_issue_ <= now) issue(now, pick(now));
-  const bool accepted = accept(now);
-  const Cycle next = next_accept();
+  Cycle next = next_accept();
+  const bool accepted = next <= now;
+  if (accepted) {
+    accept(now);
+    next = next_accept();
+  }
   if (!queue_.empty()) return busy(std::max(std::min(next, next_issue_), now + 1));
   if (bus_free_ > now) return busy(std::min(next, bus_free_));
   return accepted ? busy(now + 1) : idle(next);

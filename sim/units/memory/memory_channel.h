@@ -40,7 +40,7 @@ class MemoryChannel final : public Unit {
   };
 
   Entry entry_of(const MemoryRequest& request, std::size_t client) const;
-  bool accept(Cycle now);
+  void accept(Cycle now);
   std::size_t pick(Cycle now) const;
   void issue(Cycle now, std::size_t index);
   Cycle earliest_data(Cycle now, const Entry& entry) const;
