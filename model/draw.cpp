@@ -37,8 +37,10 @@ struct Band {
 // A batch of triangles on its way.
 class Batch {
  public:
-  Batch(const DrawBindings& bindings, const RenderOptions& options, Frame& frame)
+  // `record`: where its work goes; null: into `own_work`, until it is its turn.
+  Batch(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork* record)
       : geometry(bindings, options, primitive::Viewport{frame.width, frame.height}),
+        work(record != nullptr ? *record : own_work),
         pipe(bindings, frame, options.record_work ? &work : nullptr,
              [this](const auto& colors, auto pixels) { take(colors, pixels); }),
         state_(bindings.draw.state),
@@ -46,7 +48,9 @@ class Batch {
 
   void begin(bool write_at_once) {
     at_once = write_at_once;
-    work = {};
+    own_work.triangles.clear();  // and keep their memory
+    own_work.quads.clear();
+    own_work.texel_blocks.clear();
     windows.clear();
     bands.clear();
     shaded_count_ = 0;
@@ -60,7 +64,8 @@ class Batch {
   }
 
   GeometryBatch geometry;
-  DrawWork work;
+  DrawWork own_work;
+  DrawWork& work;
   FragmentPipe pipe;
   bool at_once = false;  // depth, shading and writing together, when its turn to be written comes
   std::vector<raster::Window> windows;
@@ -224,6 +229,7 @@ class DrawStages {
   void append(const Batch& batch) {
     const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
     behind(work_.shaded_vertices, batch.geometry.shaded_vertices);
+    if (&batch.work == &work_) return;
     behind(work_.triangles, batch.work.triangles);
     behind(work_.quads, batch.work.quads);
     behind(work_.texel_blocks, batch.work.texel_blocks);
@@ -287,7 +293,7 @@ void render_draw(const DrawBindings& bindings, const RenderOptions& options, Ind
   const bool many = thread_count() > 1;
   std::array<std::unique_ptr<Batch>, kBatchesInFlight> batches;
   for (auto& batch : std::span(batches).first(many ? kBatchesInFlight : 1))
-    batch = std::make_unique<Batch>(bindings, options, frame);
+    batch = std::make_unique<Batch>(bindings, options, frame, many ? nullptr : &work);
   many ? run_on_many_threads(indices, batches, stages) : run_on_one_thread(indices, *batches[0], stages);
 }
 

@@ -48,36 +48,45 @@ void FragmentPipe::push_band(std::span<const raster::Window> windows) {
   std::size_t passed = 0;
   for (const raster::Window& window : windows)
     passed += static_cast<std::size_t>(std::popcount(window.passed));
-  if (work_ == nullptr && passed <= kCapacity) {  // nearly every band
+  if (passed <= kCapacity) {  // nearly every band
     if (count_ + passed > kCapacity) flush();
     return push_rows(windows, 0, kQuadRows);
   }
   for (unsigned row = 0; row < kQuadRows; ++row) {
     for (const raster::Window& window : windows) {
-      if (row_of(window.covered, row) == 0) continue;
       if (count_ + static_cast<std::size_t>(std::popcount(row_of(window.passed, row))) > kCapacity) flush();
-      if (work_ != nullptr) note_quads(window, row);
-      if (bindings_.draw.state.color_write) push_rows({&window, 1}, row, row + 1);
+      push_rows({&window, 1}, row, row + 1);
     }
   }
 }
 
 void FragmentPipe::push_rows(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row) {
-  count_ = raster::append_places(*setup_, windows, first_row, end_row, width_, count_, places_);
+  if (work_ != nullptr) note_quads(windows, first_row, end_row);
+  if (bindings_.draw.state.color_write)
+    count_ = raster::append_places(*setup_, windows, first_row, end_row, width_, count_, places_);
 }
 
-// The quads of one row of a window, and which of them each fragment that comes next is of.
-void FragmentPipe::note_quads(const raster::Window& window, unsigned row) {
+// The quads, and which of them each fragment that comes next is of.
+void FragmentPipe::note_quads(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row) {
   std::size_t fragment = count_;
-  for (unsigned column = 0; column < kQuadRows; ++column) {
-    const auto covered = static_cast<std::uint8_t>(row_of(window.covered, row) >> 4 * column & 0xfu);
-    if (covered == 0) continue;
-    const auto passed = static_cast<std::uint8_t>(row_of(window.passed, row) >> 4 * column & 0xfu);
-    for (int i = 0; i < std::popcount(passed); ++i)
-      quads_[fragment++] = static_cast<std::uint32_t>(work_->quads.size());
-    work_->quads.push_back({static_cast<std::uint16_t>(window.x / 2 + static_cast<int>(column)),
-                            static_cast<std::uint16_t>(window.y / 2 + static_cast<int>(row)), covered, passed,
-                            0});
+  for (unsigned row = first_row; row < end_row; ++row) {
+    for (const raster::Window& window : windows) {
+      std::uint32_t covered = row_of(window.covered, row);
+      const std::uint32_t passed = row_of(window.passed, row);
+      while (covered != 0) {
+        const auto column = static_cast<unsigned>(std::countr_zero(covered)) / 4;
+        const auto covered_here = static_cast<std::uint8_t>(covered >> 4 * column & 0xfu);
+        const auto passed_here = static_cast<std::uint8_t>(passed >> 4 * column & 0xfu);
+        covered &= ~(0xfu << 4 * column);
+        // Of all four; those that did not pass are overwritten.
+        std::fill_n(quads_.begin() + static_cast<std::ptrdiff_t>(fragment), 4,
+                    static_cast<std::uint32_t>(work_->quads.size()));
+        fragment += static_cast<std::size_t>(std::popcount(passed_here));
+        work_->quads.push_back({static_cast<std::uint16_t>(window.x / 2 + static_cast<int>(column)),
+                                static_cast<std::uint16_t>(window.y / 2 + static_cast<int>(row)),
+                                covered_here, passed_here, 0});
+      }
+    }
   }
 }
 
@@ -89,13 +98,13 @@ void FragmentPipe::interpolate() {
 }
 
 void FragmentPipe::note_blocks(std::span<const std::uint32_t> blocks) {
-  std::size_t first = 0;  // of the quad's blocks
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (i == 0 || quads_[i] != quads_[i - 1]) first = work_->texel_blocks.size();
-    const auto begin = work_->texel_blocks.begin() + static_cast<std::ptrdiff_t>(first);
-    if (std::find(begin, work_->texel_blocks.end(), blocks[i]) != work_->texel_blocks.end()) continue;
-    work_->texel_blocks.push_back(blocks[i]);
-    ++work_->quads[quads_[i]].texel_block_count;
+  std::vector<std::uint32_t>& all = work_->texel_blocks;
+  for (std::size_t i = 0; i < blocks.size();) {
+    const std::uint32_t quad = quads_[i];
+    const auto first = static_cast<std::ptrdiff_t>(all.size());
+    for (; i < blocks.size() && quads_[i] == quad; ++i)
+      if (std::find(all.begin() + first, all.end(), blocks[i]) == all.end()) all.push_back(blocks[i]);
+    work_->quads[quad].texel_block_count = static_cast<std::uint8_t>(all.end() - all.begin() - first);
   }
 }
 
@@ -115,7 +124,7 @@ void FragmentPipe::sample(std::size_t count) {
   if (formats_.filter_bits > 0)
     texture::sample_bilinear(*bindings_.texture, formats_.filter_bits, coordinates_[0], coordinates_[1],
                              alpha);
-  note_blocks(noted);
+  if (work_ != nullptr) note_blocks(noted);
 }
 
 void FragmentPipe::flush_all() {

@@ -38,7 +38,7 @@ class FragmentPipe {
   void interpolate();
   void flush();
   void push_rows(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row);
-  void note_quads(const raster::Window& window, unsigned row);
+  void note_quads(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row);
   void sample(std::size_t count);
   void note_blocks(std::span<const std::uint32_t> blocks);
 
@@ -54,7 +54,7 @@ class FragmentPipe {
   std::size_t count_ = 0;         // of fragments in the batch
   std::size_t interpolated_ = 0;  // of these, the first that are
   raster::FragmentPlaces places_;
-  std::array<std::uint32_t, kCapacity> quads_;        // of `work`, a fragment each
+  std::array<std::uint32_t, kCapacity + 4> quads_;    // of `work`, a fragment each
   alignas(64) raster::FragmentValues coordinates_{};  // of the sampled texture
   raster::FragmentAttributes attributes_{};           // in `batch_`, or the coordinates
   pixel::FragmentBatch batch_{};

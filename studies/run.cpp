@@ -226,6 +226,28 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
 
 namespace {
 
+// The throughput of each draw after its function, while its work is at hand.
+FrameRun run_throughput(const Trace& trace, const Machine& machine, const RenderOptions& options,
+                        const Progress& progress, const OnFrame& on_frame) {
+  double seconds = 0;
+  const auto timed = [&](auto run) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    seconds += seconds_since(start);
+  };
+  sim::ThroughputEstimate estimate(trace, machine, {});
+  FrameRun run{render(trace, options, progress, on_frame,
+                      [&](const DrawWork& work) { timed([&] { estimate.add(work); }); }),
+               {},
+               0,
+               0,
+               {},
+               {}};
+  timed([&] { run.timing = estimate.result(); });
+  run.timing_seconds = seconds;
+  return run;
+}
+
 // The time after the function.
 FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
@@ -280,9 +302,14 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
   options.record_work = fidelity != Fidelity::functional || timing.heat_maps;
-  FrameRun run = fidelity == Fidelity::cycle || fidelity == Fidelity::referee
-                     ? run_beside(trace, machine, fidelity, options, progress, on_frame, timing)
-                     : run_after(trace, machine, fidelity, options, progress, on_frame, timing);
+  const auto run_it = [&] {
+    if (fidelity == Fidelity::throughput && !timing.heat_maps)
+      return run_throughput(trace, machine, options, progress, on_frame);
+    if (fidelity == Fidelity::cycle || fidelity == Fidelity::referee)
+      return run_beside(trace, machine, fidelity, options, progress, on_frame, timing);
+    return run_after(trace, machine, fidelity, options, progress, on_frame, timing);
+  };
+  FrameRun run = run_it();
   run.host_seconds = seconds_since(start);
   if (timing.heat_maps) run.heat_maps = timing.heat_maps->maps();
   return run;

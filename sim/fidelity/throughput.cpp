@@ -4,34 +4,38 @@
 #include <cmath>
 #include <string>
 
+#include "model/error.h"
 #include "sim/draw_jobs.h"
 #include "sim/fidelity/stretches.h"
 
 namespace splatscope::sim {
-namespace {
 
-class Estimate {
+class ThroughputEstimate::State {
  public:
-  Estimate(const Trace& trace, std::span<const DrawWork> work, const Machine& machine, const WhatIf& what_if)
+  State(const Trace& trace, const Machine& machine, const WhatIf& what_if)
       : trace_(trace),
         machine_(machine),
         what_if_(what_if),
         layout_(lay_out(trace, machine)),
-        draws_(prepare_draws(trace, work, machine, layout_)),
+        draws_(prepare_draws(trace, machine, layout_)),
         stretches_(trace, machine, layout_, draws_, what_if) {}
 
+  void add(const DrawWork& work) {
+    if (next_draw_ == draws_.jobs.size()) throw ModelError("there are more work records than draws");
+    while (!std::holds_alternative<Draw>(trace_.commands[ends_.size()])) add_command();
+    DrawJob& job = draws_.jobs[next_draw_++];
+    give_work(job, work);
+    begin_command();
+    add_draw(job);
+    end_command();
+    job.work = nullptr;
+  }
+
   Result result() {
+    if (next_draw_ != draws_.jobs.size()) throw ModelError("there are not as many work records as draws");
+    while (ends_.size() < trace_.commands.size()) add_command();
     Result result;
-    std::size_t next = 0;
-    for (const Command& command : trace_.commands) {
-      const double prepared = core_clocks(machine_.host.command_nanoseconds);
-      busy_[kHost] += prepared;
-      cycles_ += prepared;
-      if (std::holds_alternative<Draw>(command)) add_draw(draws_.jobs[next++]);
-      if (std::holds_alternative<Clear>(command)) add_clear();
-      if (std::holds_alternative<NormalizeOnHost>(command)) add_normalization();
-      result.command_ends.push_back(static_cast<Cycle>(std::llround(cycles_)));
-    }
+    result.command_ends = ends_;
     result.cycles = static_cast<Cycle>(std::llround(cycles_));
     result.seconds = cycles_ / (1e6 * machine_.clock.core_megahertz);
     result.frame_cycles = cycles_of_frames(trace_, result);
@@ -40,6 +44,22 @@ class Estimate {
   }
 
  private:
+  void begin_command() {
+    const double prepared = core_clocks(machine_.host.command_nanoseconds);
+    busy_[kHost] += prepared;
+    cycles_ += prepared;
+  }
+  void end_command() { ends_.push_back(static_cast<Cycle>(std::llround(cycles_))); }
+
+  // One that is no draw.
+  void add_command() {
+    const Command& command = trace_.commands[ends_.size()];
+    begin_command();
+    if (std::holds_alternative<Clear>(command)) add_clear();
+    if (std::holds_alternative<NormalizeOnHost>(command)) add_normalization();
+    end_command();
+  }
+
   double core_clocks(double nanoseconds) const { return nanoseconds * machine_.clock.core_megahertz / 1000; }
 
   // From the first index to the last pixel, where nothing waits.
@@ -123,19 +143,32 @@ class Estimate {
 
   const Trace& trace_;
   const Machine& machine_;
-  const WhatIf& what_if_;
+  const WhatIf what_if_;
   MemoryLayout layout_;
   PreparedDraws draws_;
   Stretches stretches_;
+  std::size_t next_draw_ = 0;
+  std::vector<Cycle> ends_;  // of the commands so far
   double cycles_ = 0;
   Clocks busy_{};
 };
 
-}  // namespace
+ThroughputEstimate::ThroughputEstimate(const Trace& trace, const Machine& machine, const WhatIf& what_if)
+    : state_(std::make_unique<State>(trace, machine, what_if)) {}
+ThroughputEstimate::~ThroughputEstimate() = default;
+
+void ThroughputEstimate::add(const DrawWork& work) {
+  state_->add(work);
+}
+Result ThroughputEstimate::result() {
+  return state_->result();
+}
 
 Result estimate_throughput(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                            const WhatIf& what_if) {
-  return Estimate(trace, work, machine, what_if).result();
+  ThroughputEstimate estimate(trace, machine, what_if);
+  for (const DrawWork& draw : work) estimate.add(draw);
+  return estimate.result();
 }
 
 }  // namespace splatscope::sim

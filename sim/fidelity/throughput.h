@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "model/command/commands.h"
@@ -19,5 +20,20 @@ namespace splatscope::sim {
 // like simulate().
 Result estimate_throughput(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                            const WhatIf& what_if = {});
+
+// The same draw by draw, as the function gets done with them: the work of a draw is looked at once.
+class ThroughputEstimate {
+ public:
+  // Trace and machine outlive it.
+  ThroughputEstimate(const Trace& trace, const Machine& machine, const WhatIf& what_if);
+  ~ThroughputEstimate();
+
+  void add(const DrawWork& work);  // of the next draw. Throws like simulate().
+  Result result();                 // behind the last draw
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace splatscope::sim
