@@ -3,23 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "model/error.h"
+#include "model/input_file.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::studies {
-namespace {
-
-std::string read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw UserError(path, 0, "cannot be read, expected a program's text");
-  return text.str();
-}
-
-}  // namespace
 
 void replace_program(Trace& trace, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
@@ -33,7 +22,7 @@ void replace_program(Trace& trace, const std::string& assignment) {
   const auto found = std::ranges::find(trace.programs, name, &ShaderText::name);
   if (found == trace.programs.end())
     throw UserError("--program", 0, fmt::format("no program \"{}\", expected one of {}", name, names));
-  *found = {file, read_text(file)};
+  *found = {file, read_text_file(file, "a program's text")};
   traces::check_trace(trace, file);
 }
 
