@@ -88,24 +88,22 @@ void Timeline::begin(const SimulatedMachine& machine) {
 
 std::size_t Timeline::append(std::string_view head, std::uint64_t first, std::string_view middle,
                              std::uint64_t second, std::string_view tail) {
-  const auto number = [this](std::uint64_t value) {
-    char digits[kMostDigits];
-    buffer_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-  };
-  const std::size_t before = buffer_.size();
-  buffer_ += head;
-  number(first);
-  buffer_ += middle;
-  number(second);
-  buffer_ += tail;
-  const std::size_t bytes = buffer_.size() - before;
-  if (buffer_.size() >= kBufferBytes) flush();
-  return bytes;
+  const std::size_t most = head.size() + middle.size() + tail.size() + 2 * kMostDigits;
+  if (used_ + most > buffer_.size()) flush();
+  if (most > buffer_.size()) buffer_.resize(std::max(most, kBufferBytes));
+  char* const begin = buffer_.data() + used_;
+  char* at = std::ranges::copy(head, begin).out;
+  at = std::to_chars(at, at + kMostDigits, first).ptr;
+  at = std::ranges::copy(middle, at).out;
+  at = std::to_chars(at, at + kMostDigits, second).ptr;
+  at = std::ranges::copy(tail, at).out;
+  used_ += static_cast<std::size_t>(at - begin);
+  return static_cast<std::size_t>(at - begin);
 }
 
 void Timeline::flush() {
-  out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  buffer_.clear();
+  out_.write(buffer_.data(), static_cast<std::streamsize>(used_));
+  used_ = 0;
 }
 
 void Timeline::write(std::string_view head, std::uint64_t first, std::string_view middle,

@@ -59,7 +59,8 @@ class Timeline final : public Observer {
   std::vector<Counter> channels_, buses_;
   std::vector<std::uint64_t> data_clocks_;  // of each memory channel at the last sample
   Cycle sampled_at_ = 0;
-  std::string buffer_;  // not written yet
+  std::vector<char> buffer_;
+  std::size_t used_ = 0;  // of it, not written yet
   std::uint64_t bytes_ = 0;
   Cycle cut_at_ = kNever;
 };
