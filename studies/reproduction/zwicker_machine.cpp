@@ -213,7 +213,10 @@ std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity, 
     for (const std::string_view machine_name : kMachines) {
       Machine machine = machine::load(machine_name);
       machine.numbers.frame = format;
-      if (format != FrameFormat::unorm8) machine.numbers.color = ColorFormat::float32;
+      if (format != FrameFormat::unorm8) {
+        machine.numbers.color = ColorFormat::float32;
+        machine.numbers.combiner = CombinerFormat::float32;
+      }
       const FrameRun run = run_frame(trace, machine, fidelity);
       row.frames.push_back(frame_of(machine, *run.timing));
       row.psnr = reference.psnr_of(run.rendered.frame);
