@@ -21,14 +21,14 @@ TEST(ZwickerMachine, MachinesDrawWhatTheSoftwareDoesWithTheSameSheets) {
   }
 }
 
-TEST(ZwickerMachine, WiderFormatsAreNoFaster) {
+TEST(ZwickerMachine, WiderFormatsAreNearerAndNoFaster) {
   const std::vector<FormatRow> rows = format_rows(volume_engine(96, 0.2), Fidelity::throughput);
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows.front().format, FrameFormat::unorm8);
-  for (const FormatRow& row : rows) {
-    EXPECT_GT(row.psnr, 30);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_GT(rows[i].psnr, rows[0].psnr + 6) << i << ": two more bits";
     for (std::size_t m = 0; m < 2; ++m)
-      EXPECT_GE(row.frames[m].seconds, 0.999 * rows[0].frames[m].seconds);  // cache lines are larger
+      EXPECT_GE(rows[i].frames[m].seconds, 0.999 * rows[0].frames[m].seconds) << i << ": larger cache lines";
   }
 }
 
