@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -56,6 +57,15 @@ OIIO::ImageSpec exr_spec(int width, int height, int channels) {
 constexpr OIIO::stride_t kPixelStride = sizeof(std::array<float, 4>);
 
 }  // namespace
+
+Image opaque_image(int width, int height, std::span<const glm::dvec4> pixels) {
+  Image image(width, height);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const glm::vec3 color(pixels[i]);
+    image.pixels[i] = {color.r, color.g, color.b, 1};
+  }
+  return image;
+}
 
 void write_exr(const Image& image, const fs::path& path) {
   traces::write_file(

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 // Pictures as files, and how far two of them are apart. All through OpenImageIO.
@@ -26,6 +28,9 @@ struct Image {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
 };
+
+// r g b of `pixels`, width * height in rows from the top; alpha 1.
+Image opaque_image(int width, int height, std::span<const glm::dvec4> pixels);
 
 // One channel, e.g. depth: 0 near, 1 far.
 struct GrayImage {

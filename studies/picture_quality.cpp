@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 
+#include "studies/measure.h"
 #include "studies/run.h"
 #include "traces/gamma.h"
 #include "traces/splat_trace.h"
@@ -135,10 +135,10 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
   row.reference = picture_of(reference);
 
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = HostClock::now();
   const traces::CapturedWeights captured = traces::capture_weights(
       scene.surfels, scene.splatting, scene.capture, machine.numbers, part(progress, 0, 0.8));
-  row.capture_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  row.capture_seconds = seconds_since(start);
   row.unseen = captured.unseen;
   std::vector<traces::VertexWeights> exact;
   for (const double sum : traces::filter_sums(scene.surfels, scene.splatting, 1))

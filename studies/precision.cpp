@@ -36,17 +36,6 @@ PrecisionScene with_references(std::string name, traces::Scene scene, bool one_s
           sums_of(scene, kFullCutoff, true, one_surface)};
 }
 
-// Of the summed weights where there are any.
-double median_weight(const kernels::SplatSums& reference) {
-  std::vector<double> weights;
-  for (const glm::dvec4& sum : reference.sums) {
-    if (sum.w > 0) weights.push_back(sum.w);
-  }
-  if (weights.empty()) return 0;
-  std::ranges::nth_element(weights, weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2));
-  return weights[weights.size() / 2];
-}
-
 // Every splat with the same weight, whatever its surroundings.
 Frame draw_with_weight(traces::Scene scene, double weight, const NumberFormats& numbers) {
   traces::CapturedWeights weights;
@@ -222,7 +211,8 @@ std::vector<OverlapRow> overlap_rows(std::span<const double> overlaps, int frame
       surfel.color = {1, 1, 1};
     }
     const kernels::SplatSums sums = scene_reference(plane.scene);  // of weights gamma
-    const double weight = kBrightness / median_weight(sums) * plane.scene.splatting.gamma;
+    const double median = median_weight(sums);
+    const double weight = kBrightness / median * plane.scene.splatting.gamma;
     for (const Buffer& buffer : buffers) {
       NumberFormats numbers = ideal_pipeline().numbers;
       numbers.frame = buffer.format;
@@ -231,7 +221,7 @@ std::vector<OverlapRow> overlap_rows(std::span<const double> overlaps, int frame
       OverlapRow row{buffer.name, count, 0, 0, 0};
       double pixels = 0;
       for (std::size_t i = 0; i < sums.sums.size(); ++i) {
-        if (sums.sums[i].w < 0.9 * median_weight(sums)) continue;
+        if (sums.sums[i].w < 0.9 * median) continue;
         const double should = sums.sums[i].w * weight / plane.scene.splatting.gamma;
         const double is = double{frame.color(i)[0]};
         row.bias += 255 * (is - should);

@@ -7,22 +7,20 @@
 #include <glm/common.hpp>
 
 #include "model/error.h"
+#include "studies/measure.h"
 #include "traces/splat_trace.h"
 
 namespace splatscope::studies {
-namespace {
 
-// Of the summed weights where there are any.
 double median_weight(const kernels::SplatSums& reference) {
   std::vector<double> weights;
   for (const glm::dvec4& sum : reference.sums) {
     if (sum.w > 0) weights.push_back(sum.w);
   }
-  if (weights.empty()) return 0;
-  const auto middle = weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2);
-  std::ranges::nth_element(weights, middle);
-  return *middle;
+  return median(std::move(weights));
 }
+
+namespace {
 
 kernels::ReferenceSettings filter_of(const traces::Scene& scene) {
   return {

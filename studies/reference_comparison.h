@@ -64,6 +64,9 @@ struct Comparison {
 };
 Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference);
 
+// Of the summed weights where there are any; 0 where there are none.
+double median_weight(const kernels::SplatSums& reference);
+
 // The reference as a picture, normalised per pixel.
 Image picture_of(const kernels::SplatSums& reference);
 

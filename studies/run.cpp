@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <exception>
 #include <future>
 
@@ -10,6 +9,7 @@
 #include "model/isa/program.h"
 #include "sim/fidelity/sampled.h"
 #include "sim/fidelity/throughput.h"
+#include "studies/measure.h"
 #include "studies/reference_comparison.h"
 #include "studies/report/run_report.h"
 #include "studies/roofline.h"
@@ -27,10 +27,6 @@ constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {{"functional", 
                                                                  {"sampled", Fidelity::sampled},
                                                                  {"cycle", Fidelity::cycle},
                                                                  {"referee", Fidelity::referee}};
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Of the last of `frames` and of the ones before it.
 std::string picture_name(std::size_t number, std::size_t frames) {
@@ -231,7 +227,7 @@ FrameRun run_throughput(const Trace& trace, const Machine& machine, const Render
                         const Progress& progress, const OnFrame& on_frame) {
   double seconds = 0;
   const auto timed = [&](auto run) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = HostClock::now();
     run();
     seconds += seconds_since(start);
   };
@@ -257,7 +253,7 @@ FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity
     for (const DrawWork& work : run.rendered.work) timing.heat_maps->add(work);
   }
   if (fidelity == Fidelity::functional) return run;
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = HostClock::now();
   run.timing = time_frame(trace, run.rendered.work, machine, fidelity, timing);
   run.timing_seconds = seconds_since(start);
   run.rendered.work = {};
@@ -268,7 +264,7 @@ FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity
 FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelity,
                     const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
                     const TimingOptions& timing) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = HostClock::now();
   WorkQueue queue;
   std::future<Rendered> function = std::async(std::launch::async, [&] {
     try {
@@ -297,7 +293,7 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
 
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
                    const OnFrame& on_frame, const TimingOptions& timing) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = HostClock::now();
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;

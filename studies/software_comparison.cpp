@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 
 #include "kernels/reference/fast_splatting.h"
 #include "studies/growth.h"
+#include "studies/measure.h"
 #include "studies/reference_comparison.h"
 #include "traces/splat_trace.h"
 
@@ -19,17 +19,6 @@ constexpr std::string_view kSingle = "software, single";
 constexpr std::string_view kDouble = "software, double";
 constexpr std::string_view kMachines[] = {"radeon-8500", "geforce4-ti4400"};
 constexpr std::string_view kRenderers[] = {kSingle, kDouble, kMachines[0], kMachines[1]};
-
-double median_seconds(int repeats, const std::function<void()>& draw) {
-  std::vector<double> seconds;
-  for (int i = 0; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    draw();
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  std::ranges::sort(seconds);
-  return seconds[seconds.size() / 2];
-}
 
 // Seconds of a renderer's frames over their pixels.
 Plot::Series series_of(std::span<const SoftwareRow> rows, std::string_view renderer) {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "model/error.h"
+#include "studies/measure.h"
 #include "studies/report/configuration.h"
 #include "traces/output_files.h"
 
@@ -92,14 +92,14 @@ std::vector<Study> choose(std::span<const Study> studies, std::string_view comma
 }
 
 void run_studies(std::span<const Study> studies, Findings& findings, const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = HostClock::now();
   const auto count = static_cast<double>(studies.size());
   double done = 0;
   for (const Study& study : studies) {
     study.run(findings, part(progress, done / count, (done + 1) / count));
     ++done;
   }
-  findings.write(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  findings.write(seconds_since(start));
 }
 
 }  // namespace splatscope::studies

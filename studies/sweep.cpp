@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <map>
 #include <thread>
 
 #include "model/error.h"
+#include "studies/measure.h"
 #include "studies/processes.h"
 
 namespace splatscope::studies {
@@ -115,7 +115,7 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
                 const std::optional<std::filesystem::path>& cache_folder, const Progress& progress,
                 const std::function<void()>& before_work) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = HostClock::now();
   if (fidelity == Fidelity::functional)
     throw UserError("--fidelity", 0,
                     "functional has no time to sweep, expected throughput, sampled, cycle or referee");
@@ -143,7 +143,7 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
     for (std::size_t i = 0; i < answers.size(); ++i)
       sweep.points[same.points[i]].results = Json::parse(answers[i]);
   }
-  sweep.host_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  sweep.host_seconds = seconds_since(start);
   return sweep;
 }
 

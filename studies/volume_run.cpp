@@ -2,23 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "kernels/reference/volume/fast_volume.h"
 #include "studies/image_io.h"
+#include "studies/measure.h"
 #include "studies/volume_pictures.h"
 #include "traces/output_files.h"
 
 namespace splatscope::studies {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 kernels::FastVolumePicture in_single(const kernels::VolumePicture& exact) {
   kernels::FastVolumePicture picture{exact.width, exact.height, {}, exact.left_out, exact.sheets};
@@ -31,11 +25,11 @@ kernels::FastVolumePicture in_single(const kernels::VolumePicture& exact) {
 std::string run_volume(const traces::VolumeScene& scene, Precision precision,
                        const std::filesystem::path& folder, const Progress& progress) {
   traces::prepare_output_folder(folder);
-  const auto start = Clock::now();
+  const auto start = HostClock::now();
   kernels::FastVolume volume(scene.splats());
   const double classify_seconds = seconds_since(start);
   const std::size_t splats = volume.splats().splats.size(), empty = volume.splats().empty;
-  const auto frame_start = Clock::now();
+  const auto frame_start = HostClock::now();
   const std::clock_t processor_start = std::clock();
   const kernels::FastVolumePicture picture =
       precision == Precision::single_precision

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include "kernels/reference/volume/fast_volume.h"
+#include "studies/measure.h"
 #include "traces/volume_trace.h"
 
 namespace splatscope::studies {
@@ -32,16 +32,6 @@ kernels::VolumeSettings software_settings() {
   return {.cutoff = machine.cutoff, .light = machine.light};
 }
 
-Image image_of(const kernels::VolumePicture& picture) {
-  Image image(picture.width, picture.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c)
-      image.pixels[i][c] = static_cast<float>(picture.pixels[i][static_cast<glm::length_t>(c)]);
-    image.pixels[i][3] = 1;
-  }
-  return image;
-}
-
 // The software's picture, and where there is anything in it.
 struct Reference {
   Image image;
@@ -50,7 +40,7 @@ struct Reference {
   explicit Reference(const VolumeModel& model) {
     const kernels::VolumePicture picture =
         kernels::volume_picture(model.view, model.splats, software_settings());
-    image = image_of(picture);
+    image = opaque_image(picture.width, picture.height, picture.pixels);
     for (const glm::dvec4& pixel : picture.pixels) covered.push_back(pixel.w > 0.5 / 255);
   }
   double psnr_of(const Frame& frame) const { return psnr(picture_of(frame), image, covered); }
@@ -75,9 +65,9 @@ double software_seconds(const VolumeModel& model) {
   kernels::FastVolume fast(model.splats);
   double least = 1e30;
   for (int i = 0; i < 3; ++i) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = HostClock::now();
     fast.draw(model.view, software_settings());
-    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    least = std::min(least, seconds_since(start));
   }
   return least;
 }

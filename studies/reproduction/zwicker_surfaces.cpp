@@ -4,10 +4,10 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "kernels/reference/fast_splatting.h"
+#include "studies/measure.h"
 
 namespace splatscope::studies {
 namespace {
@@ -26,33 +26,6 @@ constexpr PublishedModel kPublished[] = {{head_model, 429075, {1.3, 0.7}},
 
 kernels::LayeredSettings settings_of(const SurfaceModel& model, int layers) {
   return {.same_surface = 4 * model.spacing, .layers = layers, .background = {0.08, 0.09, 0.12}};
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-double median_seconds(int repeats, const std::function<void()>& draw) {
-  std::vector<double> seconds;
-  for (int i = 0; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    draw();
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  return median(seconds);
-}
-
-Image picture_of(const kernels::LayeredPicture& picture) {
-  Image image(picture.width, picture.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c)
-      image.pixels[i][c] = static_cast<float>(picture.pixels[i][static_cast<glm::length_t>(c)]);
-    image.pixels[i][3] = 1;
-  }
-  return image;
 }
 
 std::string text_of(const std::vector<SurfaceRow>& rows) {
@@ -166,7 +139,7 @@ void reproduce_zwicker_figure17(Findings& findings, const Progress& progress) {
         percent(outcomes.replaced), percent(outcomes.dropped)));
     pictures.push_back({fmt::format("zwicker-fig17{}", part),
                         fmt::format("{}: {}, {} surfels", model.name, model.stand_in, model.surfels.size()),
-                        picture_of(picture)});
+                        opaque_image(picture.width, picture.height, picture.pixels)});
     list.push_back({{"model", model.name},
                     {"stand_in", model.stand_in},
                     {"surfels", model.surfels.size()},
