@@ -38,7 +38,8 @@ ExtremeErrors errors_of(const View& view, const Surfel& surfel, const QuadOutput
   if (!filter) return {};
   if (!is_finite(quad)) return {kInfinity, kInfinity};
   const double deviation = kernels::deviation_error(
-      kernels::measured_axes(kernels::tangent_plane(view, surfel, quad)), filter->axes);
+      kernels::measured_axes(kernels::tangent_plane(view, surfel, quad), kernels::gaussian_coordinates(quad)),
+      filter->axes);
   const double weight = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter->determinant);
   return {std::isfinite(deviation) ? deviation : kInfinity, relative(quad[0].diffuse.w, weight)};
 }
@@ -220,7 +221,7 @@ std::vector<Guard> guards() {
   return {
       {"o_z at the near plane or beyond",
        "paper",
-       {{"max r1.w, r1.z, c3.z", ";"}, {"rcp r1.w, r1.w", "rcp r1.w, r1.z"}},
+       {{"max r1.w, r1.z, c3.z", ";"}, {"rcp r2.w, r1.w", "rcp r2.w, r1.z"}, {"r4.x, r1.w", "r4.x, r1.z"}},
        "the eye on or in a surfel"},
       {"floor of D^2",
        "paper",
@@ -231,6 +232,17 @@ std::vector<Guard> guards() {
       {"|p| never 0", "paper", {{"max r9.x, r9.x, c7.w", ";"}}, "t = 0: facing the eye"},
       {"second pivot of W", "facing", {{"max r7.y, r7.y, c6.x", ";"}}, "huge and edge-on"},
       {"second pivot of W", "normal", {{"max r7.y, r7.y, c6.x", ";"}}, "huge and edge-on"},
+      {"corners at half the depth or beyond",
+       "paper",
+       {{"mul r4.x, r2.z, r2.z", ";"},
+        {"mad r4.x, r3.z, r3.z, r4.x", ";"},
+        {"mul r4.x, r4.x, r10.x", ";"},
+        {"rsq r4.x, r4.x", ";"},
+        {"mul r4.x, r4.x, r1.w", ";"},
+        {"mul r4.x, r4.x, c7.z", ";"},
+        {"min r4.x, r4.x, c3.w", ";"},
+        {"mul r0.xy, r0, r4.x", ";"}},
+       "corners past the eye"},
       {"corners at half the depth or beyond",
        "facing",
        {{"mul r10.y, r1.w, r3.w\n",

@@ -26,6 +26,13 @@ constexpr double kAbsoluteFloor = 1e-16;
 // In place of |p| = 0: far under p of any surfel up to 1e6 pixels wide, and its square is no denormal.
 constexpr double kSmallestP = 1e-15;
 
+// 1/side, up where it rounds: half a side then becomes 1/2 in either arithmetic, and texture coordinates 0
+// and 1.
+float inverse_side(float side) {
+  const float inverse = 1.0f / side;
+  return static_cast<double>(side) * inverse < 1.0 ? std::nextafter(inverse, 1.0f) : inverse;
+}
+
 }  // namespace
 
 ShaderText shader_text(std::string_view name) {
@@ -49,7 +56,10 @@ std::vector<Vec4> splat_constants(const View& view, double cutoff, double depth_
   c[4] = vec4(depth, -near * depth, depth_offset, 0.5);
   c[5] = vec4(2.0 * radius, -radius, 2.0, -1.0);
   c[6] = vec4(view.eta, -view.eta, 0.0, 0.5 * std::numbers::inv_pi);
-  c[7] = vec4(kAbsoluteFloor, kRelativeFloor, -2.0, kSmallestP);
+  // Half the depth over sqrt(2) sqrt(2c), the longest y.
+  c[7] = vec4(kAbsoluteFloor, kRelativeFloor, 0.25 / std::sqrt(cutoff), kSmallestP);
+  const float side = static_cast<float>(2.0 * std::sqrt(cutoff));
+  c[8] = {side, -0.5f * side, inverse_side(side), 0.5f};
   return c;
 }
 

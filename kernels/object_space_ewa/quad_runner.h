@@ -119,6 +119,14 @@ inline std::array<glm::dvec2, 4> tangent_plane(const View& view, const Surfel& s
   return u;
 }
 
+// y of Eq. 14 at the corners: where in the unit Gaussian their texture coordinates are.
+inline std::array<glm::dvec2, 4> gaussian_coordinates(const QuadOutput& quad) {
+  std::array<glm::dvec2, 4> y;
+  for (std::size_t i = 0; i < 4; ++i)
+    y[i] = 2.0 * std::sqrt(2.0 * kCutoff) * (glm::dvec2(quad[i].texture) - 0.5);
+  return y;
+}
+
 // The view with every number rounded to binary32, as the constants hold it.
 inline View rounded(View view) {
   for (int column = 0; column < 4; ++column) {

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 
 #include "kernels/object_space_ewa/quad_runner.h"
+#include "kernels/object_space_ewa/splat_accuracy.h"
 
 // Where the formulas of the paper break or their guards act: t = 0, p = 0 with B < 0, D = 0, behind the eye,
 // and finite numbers that no scene has.
@@ -50,11 +54,8 @@ QuadOutput run_one(const SplatProgram& program, const View& view, const Surfel& 
   return run_quads(program, Arithmetic::ieee, view, 0.0, std::vector<Surfel>{surfel})[0];
 }
 
-// The parallelogram's sides in units of s and t, over 2 sqrt(2c).
-glm::dmat2 measured_axes(const View& view, const Surfel& surfel, const QuadOutput& quad) {
-  const auto u = tangent_plane(view, surfel, quad);
-  const double side = 2.0 * std::sqrt(2.0 * kCutoff);
-  return {(u[1] - u[0]) / side, (u[3] - u[0]) / side};
+glm::dmat2 axes_of(const View& view, const Surfel& surfel, const QuadOutput& quad) {
+  return measured_axes(tangent_plane(view, surfel, quad), gaussian_coordinates(quad));
 }
 
 class SpecialCases : public testing::TestWithParam<SplatProgram> {};
@@ -103,7 +104,7 @@ TEST_P(SpecialCases, p_is_0) {
     ASSERT_NEAR(filter.variance[0][0] - filter.variance[1][1], 0.0, 1e-12);
     ASSERT_LT(direction * filter.variance[0][1], -0.01);
     const Surfel facing = facing_eye(surfel);
-    const glm::dmat2 axes = measured_axes(view, surfel, run_one(GetParam(), view, facing));
+    const glm::dmat2 axes = axes_of(view, surfel, run_one(GetParam(), view, facing));
     expect_near(axes * glm::transpose(axes), filter.variance, 1e-4);
   }
 }
@@ -116,7 +117,7 @@ TEST_P(SpecialCases, t_is_0) {
       const Surfel surfel = facing_eye(surfel_at({x, y, 2}, {0.01, 0, 0}, {0, 0.01, 0}));
       const QuadOutput quad = run_one(GetParam(), view, surfel);
       ASSERT_TRUE(finite(quad));
-      const glm::dmat2 axes = measured_axes(view, surfel, quad);
+      const glm::dmat2 axes = axes_of(view, surfel, quad);
       const double variance = 1.0 + 1.0 / (2.56 * 2.56);  // h is 2.56 pixels
       expect_near(axes * glm::transpose(axes), glm::dmat2(variance), 1e-5);
     }
@@ -136,7 +137,8 @@ TEST_P(SpecialCases, d_is_0) {
   }
 }
 
-// The paper's program: infinitely long along the ray, one pixel's filter and its own across.
+// The paper's program: infinitely long along the ray, one pixel's filter and its own across; as much of that
+// is drawn as stays half the depth away from the eye.
 TEST(SpecialCasesOfThePaper, d_is_0) {
   const View view = plain_view();
   for (const bool swapped : {false, true}) {
@@ -146,10 +148,12 @@ TEST(SpecialCasesOfThePaper, d_is_0) {
     const auto corner = [&](std::size_t i) {
       return glm::dvec2(quad[i].position.x * 0.5 * view.width / view.eta, quad[i].position.w);  // x, z
     };
-    const double side = 2.0 * std::sqrt(2.0 * kCutoff);
+    const auto y = gaussian_coordinates(quad);
+    const double side = y[1].x - y[0].x;
     EXPECT_NEAR(std::abs(corner(3).x - corner(0).x) / side, 0.01 * std::sqrt(1.0 + 1.0 / (2.56 * 2.56)),
                 1e-5);
     EXPECT_GT(std::abs(corner(1).y - corner(0).y) / side, 100.0);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(corner(i).y, 1.0);
   }
 }
 
@@ -238,6 +242,41 @@ TEST_P(SpecialCases, hostile_positions_and_sizes_stay_finite) {
       surfel.sigma = std::pow(10.0, -3.0 + 6.0 * hostile.uniform());
     }
     expect_finite(GetParam(), surfels);
+  }
+}
+
+// A finite float of any size, in [-1, 1].
+rc::Gen<double> fraction() {
+  return rc::gen::map(
+      rc::gen::suchThat(rc::gen::arbitrary<std::uint32_t>(),
+                        [](std::uint32_t bits) { return (bits & 0x7f800000u) != 0x7f800000u; }),
+      [](std::uint32_t bits) {
+        const double x = std::bit_cast<float>(bits);
+        return std::abs(x) > 1 ? 1 / x : x;
+      });
+}
+
+// Nothing comes nearer to the eye than half the centre's depth, so nothing reaches further in the window than
+// twice what the exact filter does: a splat is larger than the frame only where the filter is larger than
+// half of it. Edge-on, too, and up to the size that the recorder draws.
+RC_GTEST_PROP(SpecialCasesOfThePaper, no_corner_comes_nearer_than_half_the_depth, ()) {
+  const View view = plain_view();
+  const double depth = view.near_plane * std::pow(8000.0, std::abs(*fraction()));
+  const glm::dvec3 o{depth * *fraction(), depth * *fraction(), depth};
+  const double tilt = 0.5 * std::numbers::pi * *fraction(), turn = std::numbers::pi * *fraction();
+  // The normal turns from facing the eye to edge-on, and on by next to nothing from either.
+  const glm::dvec3 ray = glm::normalize(o), across = glm::normalize(glm::cross(ray, glm::dvec3(0, 1, 0)));
+  const double cosine = *rc::gen::arbitrary<bool>() ? std::cos(tilt) : std::sin(tilt);
+  const glm::dvec3 normal = -cosine * ray + std::sqrt(1 - cosine * cosine) * across;
+  const glm::dvec3 a = glm::normalize(glm::cross(normal, glm::dvec3(0.1, 1, 0.2))), b = glm::cross(normal, a);
+  const double h = 1e9 * depth / view.eta * std::abs(*fraction());
+  Surfel surfel = surfel_at(o, h * (std::cos(turn) * a + std::sin(turn) * b),
+                            h * (std::cos(turn) * b - std::sin(turn) * a));
+  surfel.sigma = 0.3 + std::abs(*fraction());
+  for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
+    const std::vector<Surfel> one{surfel};
+    const QuadOutput quad = run_quads(ewa_program("paper"), arithmetic, view, 0.0, one)[0];
+    for (const CornerOutput& corner : quad) RC_ASSERT(corner.position.w >= 0.499 * depth);
   }
 }
 

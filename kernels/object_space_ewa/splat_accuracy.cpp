@@ -8,18 +8,16 @@
 namespace splatscope::kernels {
 namespace {
 
-const double kRadius = std::sqrt(2.0 * kCutoff);
-
 // Largest distance of corresponding corners in pixels under `to_pixels`, for the best symmetry of the square.
 template <typename ToPixels>
-double corner_error(const std::array<glm::dvec2, 4>& u, const glm::dmat2& axes, const ToPixels& to_pixels) {
+double corner_error(const std::array<glm::dvec2, 4>& u, const std::array<glm::dvec2, 4>& y,
+                    const glm::dmat2& axes, const ToPixels& to_pixels) {
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t symmetry = 0; symmetry < 8; ++symmetry) {
     double worst = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t image = symmetry < 4 ? (i + symmetry) % 4 : (symmetry - i) % 4;
-      const glm::dvec2 y = 2.0 * kRadius * (kQuadCorners[image] - 0.5);
-      worst = std::max(worst, glm::distance(to_pixels(u[i]), to_pixels(axes * y)));
+      worst = std::max(worst, glm::distance(to_pixels(u[i]), to_pixels(axes * y[image])));
     }
     best = std::min(best, worst);
   }
@@ -40,14 +38,14 @@ glm::dmat2 nearest_factor(const glm::dmat2& measured, const glm::dmat2& axes) {
 // The same in the window, where every corner is at least half as far away as the surfel's centre; 0
 // elsewhere. A corner near the eye's plane has no bound: the projection magnifies without one.
 double window_corner_error(const View& view, const Surfel& surfel, const std::array<glm::dvec2, 4>& u,
-                           const glm::dmat2& axes) {
+                           const std::array<glm::dvec2, 4>& y, const glm::dmat2& axes) {
   const glm::dvec3 o = view.camera_space(surfel.position);
   const glm::dvec3 s = view.camera_direction(surfel.tangent_s);
   const glm::dvec3 t = view.camera_direction(surfel.tangent_t);
   for (const glm::dvec2& corner : u) {
     if (o.z + corner.x * s.z + corner.y * t.z < 0.5 * o.z) return 0;
   }
-  return corner_error(u, axes, [&](const glm::dvec2& c) { return view.window(o + c.x * s + c.y * t); });
+  return corner_error(u, y, axes, [&](const glm::dvec2& c) { return view.window(o + c.x * s + c.y * t); });
 }
 
 // Where J^-1 J^-T is a multiple of I, so is M, and its axes are arbitrary: rounding of relative size e turns
@@ -68,8 +66,9 @@ bool has_principal_axes(const SplatProgram& program) {
 
 }  // namespace
 
-glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& u) {
-  return {(u[1] - u[0] + u[2] - u[3]) / (4.0 * kRadius), (u[3] - u[0] + u[2] - u[1]) / (4.0 * kRadius)};
+glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& u, const std::array<glm::dvec2, 4>& y) {
+  return {(u[1] - u[0] + u[2] - u[3]) / (y[1] - y[0] + y[2] - y[3]).x,
+          (u[3] - u[0] + u[2] - u[1]) / (y[3] - y[0] + y[2] - y[1]).y};
 }
 
 double deviation_error(const glm::dmat2& measured, const glm::dmat2& exact) {
@@ -93,18 +92,20 @@ SplatErrors splat_errors(const SplatProgram& program, Arithmetic arithmetic, std
     const Surfel& surfel = surfels[i];
     const SurfelFilter filter = *surfel_filter(view, surfel, prefilter);
     const std::array<glm::dvec2, 4> u = tangent_plane(view, surfel, quads[i]);
+    const std::array<glm::dvec2, 4> y = gaussian_coordinates(quads[i]);
+    const glm::dmat2 measured = measured_axes(u, y);
     const double weight = surfel.weight * 0.5 * std::numbers::inv_pi / std::sqrt(filter.determinant);
-    errors.deviation = std::max(errors.deviation, deviation_error(measured_axes(u), filter.axes));
+    errors.deviation = std::max(errors.deviation, deviation_error(measured, filter.axes));
     errors.weight = std::max(errors.weight, std::abs(quads[i][0].diffuse.w / weight - 1.0));
     glm::dmat2 axes = filter.axes;
     if (!has_principal_axes(program)) {
-      axes = nearest_factor(measured_axes(u), axes);
+      axes = nearest_factor(measured, axes);
     } else if (prefilter && anisotropy(filter, surfel.sigma) < kRound) {
       continue;
     }
-    errors.corner = std::max(errors.corner,
-                             corner_error(u, axes, [&](const glm::dvec2& c) { return filter.jacobian * c; }));
-    errors.window_corner = std::max(errors.window_corner, window_corner_error(view, surfel, u, axes));
+    errors.corner = std::max(
+        errors.corner, corner_error(u, y, axes, [&](const glm::dvec2& c) { return filter.jacobian * c; }));
+    errors.window_corner = std::max(errors.window_corner, window_corner_error(view, surfel, u, y, axes));
     ++errors.corners_compared;
   }
   return errors;

@@ -15,8 +15,9 @@ struct SplatErrors {
   int corners_compared = 0;
 };
 
-// Rot(theta) Lambda as the corners of a quad show it, in units of s and t.
-glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& corners);
+// Rot(theta) Lambda as the corners of a quad show it, in units of s and t: where they are (tangent_plane) by
+// where in the Gaussian (gaussian_coordinates).
+glm::dmat2 measured_axes(const std::array<glm::dvec2, 4>& corners, const std::array<glm::dvec2, 4>& y);
 
 // Largest relative deviation, over every direction of the screen, of the standard deviation by `measured`
 // from that by `exact`.

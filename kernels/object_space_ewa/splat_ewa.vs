@@ -3,8 +3,8 @@ vs_1_1
 ; tangent plane. u is in units of h, so V_r = sigma^2 I. Inputs and constants: programs.h; why the formulas differ
 ; from the printed ones where they do: README.md.
 
-; Eq. 14: y = 2 sqrt(2c) (v - 1/2)
-mad r0.xy, v3, c5.x, c5.y
+; Eq. 14, over sqrt 2: y = 2 sqrt(c) (v - 1/2)
+mad r0.xy, v3, c8.x, c8.y
 
 ; Eq. 9: o, s and t in camera space
 dp4 r1.x, v0, c0
@@ -19,9 +19,9 @@ dp3 r3.z, v2, c2
 
 ; Jacobian, a column each: J_s = eta/oz^2 (s oz - o sz), J_t likewise, second row negated; z is 0, so DP3 serves
 max r1.w, r1.z, c3.z            ; a surfel behind the near plane keeps a finite J
-rcp r1.w, r1.w
-mul r1.w, r1.w, r1.w            ; 1/oz^2
-mul r4.xyz, r1.w, c6            ; (eta, -eta, 0)/oz^2
+rcp r2.w, r1.w
+mul r2.w, r2.w, r2.w            ; 1/oz^2
+mul r4.xyz, r2.w, c6            ; (eta, -eta, 0)/oz^2
 mul r5.xyz, r1, r2.z
 mad r5.xyz, r2, r1.z, -r5
 mul r5.xyz, r5, r4              ; J_s
@@ -41,69 +41,72 @@ mad r8.w, r8.w, r8.w, c7.x
 mad r7.x, r8.w, c7.y, r7.x      ; D^2 + 1e-11 ((S + T)^2 + 1e-16): an edge-on surfel keeps a finite M
 rcp r7.x, r7.x                  ; 1/D^2
 
-; M = V_r + J^-1 J^-T = [A B/2; B/2 C], by p = A - C and q = A + C (Appendix A): V_r is isotropic and drops out of p
-mul r8.xyz, r8, r7.x            ; T/D^2, S/D^2, R/D^2
-mul r8.z, r8.z, c7.z            ; B = -2 R/D^2
-add r8.w, r8.x, r8.y            ; trace of J^-1 J^-T
+; M = V_r + J^-1 J^-T = [A B/2; B/2 C], by halves of p = A - C, q = A + C (Appendix A): V_r is isotropic, no part of p
+mul r8.xyz, r8, r7.x            ; T/D^2, S/D^2, R/D^2 = -B/2
+mul r8.xy, r8, c4.w
+add r8.w, r8.x, r8.y            ; half the trace of J^-1 J^-T
 mul r7.y, v4.x, v4.x            ; sigma^2
-add r9.x, r8.x, -r8.y           ; p
-mad r9.y, r7.y, c5.z, r8.w      ; q
+add r9.x, r8.x, -r8.y           ; p/2
+add r9.y, r8.w, r7.y            ; q/2
 
-; |t| = sqrt(p^2 + B^2)
+; |t|/2 = sqrt((p/2)^2 + (B/2)^2)
 sge r9.w, r9.x, c6.z            ; p >= 0
 max r9.x, r9.x, -r9.x
-max r9.x, r9.x, c7.w            ; |p|, never 0: M = I gives the identity, and p = 0 with B < 0 its own sign
-mul r9.z, r8.z, r8.z
-mad r9.z, r9.x, r9.x, r9.z
-rsq r9.z, r9.z
-rcp r9.z, r9.z                  ; |t|
+max r9.x, r9.x, c7.w            ; |p|/2, never 0: M = I gives the identity, and p = 0 with B < 0 its own sign
+mul r7.z, r8.z, r8.z
+mad r7.z, r9.x, r9.x, r7.z
+rsq r9.z, r7.z                  ; 2/|t|
+mul r7.z, r7.z, r9.z            ; |t|/2
 
 ; larger eigenvalue (q + |t|)/2; the smaller by |M| = sigma^4 + sigma^2 trace(J^-1 J^-T) + 1/D^2: q - |t| cancels
-add r10.x, r9.y, r9.z
-mul r10.x, r10.x, c4.w          ; r0^2
-add r10.z, r8.w, r7.y
+add r10.x, r9.y, r7.z           ; r0^2
+add r10.z, r9.y, r8.w
 mad r10.z, r10.z, r7.y, r7.x    ; |M|
-rcp r10.w, r10.x
-mul r10.y, r10.z, r10.w         ; r1^2
-rsq r10.x, r10.x
-rcp r10.x, r10.x                ; r0
-rsq r10.y, r10.y
-rcp r10.y, r10.y                ; r1
+rsq r10.w, r10.z                ; 1/(r0 r1)
+rcp r10.z, r10.w
+rsq r7.w, r10.x                 ; 1/r0
+mul r10.y, r10.z, r7.w          ; r1
 
-; larger component of the eigenvector sqrt((|t| + |p|)/(2|t|)), the other B/(2|t| times it): t - p cancels, and the
+; Seen edge-on a parallelogram reaches past the eye: y becomes so short that no corner comes nearer than half the depth,
+; as r0 sqrt(2) sqrt(2c) |(sz, tz)| is the most that one can. The texture follows: the Gaussian is cut, not squeezed.
+mul r4.x, r2.z, r2.z
+mad r4.x, r3.z, r3.z, r4.x
+mul r4.x, r4.x, r10.x
+rsq r4.x, r4.x
+mul r4.x, r4.x, r1.w
+mul r4.x, r4.x, c7.z
+min r4.x, r4.x, c3.w
+mul r0.xy, r0, r4.x
+mul r10.x, r10.x, r7.w          ; r0
+
+; larger component of the eigenvector, times sqrt 2: sqrt(1 + |p|/|t|), the other B/|t| over it: t - p cancels, and the
 ; sign comes out right
-add r11.x, r9.z, r9.x           ; |t| + |p|
-add r11.y, r9.z, r9.z           ; 2|t|
-rcp r11.z, r11.y
+mad r11.x, r9.x, r9.z, c3.w
+rsq r11.z, r11.x
 mul r11.x, r11.x, r11.z
-rsq r11.x, r11.x
-rcp r11.x, r11.x
-mul r11.y, r11.y, r11.x
-rcp r11.y, r11.y
-mul r11.y, r11.y, r8.z
+mul r11.y, -r8.z, r9.z
+mul r11.y, r11.y, r11.z
 
 ; the axis of r0: (larger, other) where p >= 0, (other, larger) where p < 0
 add r11.zw, r11.xxxy, -r11.xxyx
-mad r11.xy, r11.zwzw, r9.w, r11.yxyx   ; cos(theta), sin(theta)
+mad r11.xy, r11.zwzw, r9.w, r11.yxyx   ; sqrt 2 times cos(theta), sin(theta)
 
 ; Eq. 12: u = Rot(theta) Lambda y
-mul r0.xy, r0, r10
-mul r4.xy, r11, r0.x
-mad r4.x, -r11.y, r0.y, r4.x
-mad r4.y, r11.x, r0.y, r4.y
+mul r4.xy, r0, r10
+mul r5.xy, r11, r4.x
+mad r5.x, -r11.y, r4.y, r5.x
+mad r5.y, r11.x, r4.y, r5.y
 
 ; p_c = o + u0 s + u1 t
-mad r1.xyz, r4.x, r2, r1
-mad r1.xyz, r4.y, r3, r1
+mad r1.xyz, r5.x, r2, r1
+mad r1.xyz, r5.y, r3, r1
 
 ; frustum: (x, y, A z + B, z)
 mul oPos.xyw, r1.xyzz, c3
 mad oPos.z, r1.z, c4.x, c4.y
 
 ; s_k / (2 pi r0 r1)
-mul r10.w, r10.x, r10.y
-rcp r10.w, r10.w
 mul r10.w, r10.w, v4.y
 mul oD0.w, r10.w, c6.w
 mov oD0.xyz, v5
-mov oT0.xy, v3
+mad oT0.xy, r0, c8.z, c8.w
