@@ -78,7 +78,7 @@ endfunction()
 
 function(splatscope_benchmarks folder)
   splatscope_sources(${folder} bench sources)
-  if(sources)
+  if(sources AND NOT SPLATSCOPE_SANITIZE)
     add_executable(${folder}_benchmarks ${sources})
     target_link_libraries(${folder}_benchmarks PRIVATE ${ARGN} splatscope_options benchmark::benchmark_main)
     target_compile_definitions(${folder}_benchmarks PRIVATE SPLATSCOPE_SOURCE="${CMAKE_SOURCE_DIR}")

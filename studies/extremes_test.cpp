@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace splatscope::studies {
 namespace {
@@ -51,17 +49,6 @@ TEST(Extremes, guards_repair_what_they_are_for) {
     EXPECT_EQ(row.with.not_finite, 0);
     EXPECT_GT(row.without.not_finite + row.without.too_wide, row.with.not_finite + row.with.too_wide);
   }
-}
-
-// A sweep of docs/extremes.md, made again.
-TEST(Extremes, the_documentation_holds) {
-  std::ifstream file(SPLATSCOPE_SOURCE "/docs/extremes.md");
-  std::stringstream page;
-  page << file.rdbuf();
-  std::vector<ExtremeRow> rows;
-  for (const Splatter& one : splatters())
-    rows.push_back(sweep_row(sweep("cosine"), one, kSurfelsAValue, kExtremesSeed));
-  EXPECT_NE(page.str().find(text_of(rows)), std::string::npos) << text_of(rows);
 }
 
 }  // namespace
