@@ -119,21 +119,28 @@ TEST(BlockCulling, NeverChangesThePictureOfOtherSettings) {
   }
 }
 
-// A block of one surfel at `position`, a unit in radius.
-Block block_of(const glm::vec3& position, const glm::vec3& normal) {
-  const Surfel surfel{position, normal, 1, {}};
-  return build_ldc_tree({&surfel, 1}, 256).levels.front().blocks.front();
+// A block of surfels a unit in radius.
+Block block_of(std::initializer_list<glm::vec3> positions, const glm::vec3& normal) {
+  std::vector<Surfel> surfels;
+  for (const glm::vec3& position : positions) surfels.push_back({position, normal, 1, {}});
+  return build_ldc_tree(surfels, 65536).levels.front().blocks.front();
 }
 
 // 90 degrees of view, 500 pixels each way: an eta of 250.
-BlockFate fate_of(const glm::vec3& position, const glm::vec3& normal, Faces faces = Faces::front) {
+BlockFate fate_of(std::initializer_list<glm::vec3> positions, const glm::vec3& normal,
+                  Faces faces = Faces::front) {
   Splatting splatting;
   splatting.cutoff = 1;
   splatting.sigma = 1;
   splatting.depth_offset = 1;
   splatting.faces = faces;
   const kernels::View view = kernels::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 500, 500, 1, 1000);
-  return BlockCulling(view, splatting).fate(block_of(position, normal));
+  const Block block = block_of(positions, normal);
+  EXPECT_EQ(positions.size(), block.count);
+  return BlockCulling(view, splatting).fate(block);
+}
+BlockFate fate_of(const glm::vec3& position, const glm::vec3& normal, Faces faces = Faces::front) {
+  return fate_of({position}, normal, faces);
 }
 
 TEST(BlockCulling, KnowsWhatFacesAway) {
@@ -145,6 +152,12 @@ TEST(BlockCulling, KnowsWhatFacesAway) {
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {1, 0, 0})) << "edge-on";
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {0.995f, 0, 0.0998f})) << "may turn on the pixel grid";
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 1.5f}, {0.6f, 0, 0.8f})) << "cut by the near plane";
+}
+
+// The eye is behind all of the block's planes, not behind that of its middle alone.
+TEST(BlockCulling, LooksFromTheNearestPlane) {
+  EXPECT_EQ(BlockFate::drawn, fate_of({{-2, 0, 20}, {18, 0, 20}}, {1, 0, 0}));
+  EXPECT_EQ(BlockFate::facing_away, fate_of({{6, 0, 20}, {18, 0, 20}}, {1, 0, 0}));
 }
 
 TEST(BlockCulling, KnowsWhatIsOutside) {
