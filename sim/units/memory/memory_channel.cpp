@@ -69,9 +69,10 @@ Cycle MemoryChannel::earliest_data(Cycle now, const Entry& entry) const {
 // a write), the oldest of equals; the oldest of all once it has been overtaken often enough.
 std::size_t MemoryChannel::pick(Cycle now) const {
   if (bypassed_ >= spec_.bypass_limit) return 0;
+  const Cycle no_wait = std::max(now + cas_, bus_free_);  // nothing can be there before
   std::size_t best = 0;
   Cycle best_data = kNever;
-  for (std::size_t i = 0; i < queue_.size(); ++i) {
+  for (std::size_t i = 0; best_data > no_wait && i < queue_.size(); ++i) {
     const Cycle data = earliest_data(now, queue_[i]);
     if (data < best_data) {
       best = i;
