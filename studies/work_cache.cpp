@@ -1,7 +1,8 @@
 #include "studies/work_cache.h"
 
-#include <OpenImageIO/hash.h>
 #include <fmt/format.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include <cstring>
 #include <fstream>
@@ -23,7 +24,7 @@ struct Header {
 };
 
 std::uint64_t hash_of(const void* bytes, std::size_t size, std::uint64_t seed) {
-  return OIIO::xxhash::XXH64(bytes, size, seed);
+  return XXH64(bytes, size, seed);
 }
 
 std::string bytes_of(const std::filesystem::path& path) {

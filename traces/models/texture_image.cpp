@@ -1,38 +1,24 @@
 #include "traces/models/texture_image.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "pictures/codec.h"
+
 namespace splatscope::traces {
 namespace {
 
-std::optional<TextureImage> read(const std::string& name, OIIO::Filesystem::IOProxy* in_memory) {
-  constexpr int kMost = 16384;  // texels
-  const auto input = OIIO::ImageInput::open(name, nullptr, in_memory);
-  if (!input) {
-    OIIO::geterror();  // else OpenImageIO prints it at exit
-    return std::nullopt;
-  }
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > kMost || spec.height > kMost || spec.depth > 1 ||
-      spec.nchannels < 1)
-    return std::nullopt;
-  TextureImage image{static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height), {}};
-  const int channels = std::min(spec.nchannels, 3);
-  std::vector<std::uint8_t> bytes(image.width * image.height * static_cast<std::size_t>(channels));
-  if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, bytes.data())) {
-    input->geterror();
-    return std::nullopt;
-  }
+std::optional<TextureImage> read(const pictures::Source& source) {
+  constexpr std::size_t kMost = 16384;  // texels
+  std::string why;
+  const auto decoded = pictures::codec().read_bytes(source, 3, kMost, &why);
+  if (!decoded) return std::nullopt;
+  TextureImage image{decoded->width, decoded->height, {}};
   image.texels.resize(image.width * image.height * 3);
-  const auto step = static_cast<std::size_t>(channels);
   for (std::size_t i = 0; i < image.width * image.height; ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      image.texels[3 * i + c] = bytes[step * i + (channels == 3 ? c : 0)];  // else grey
+    for (std::size_t c = 0; c < 3; ++c)  // else grey
+      image.texels[3 * i + c] = decoded->values[decoded->channels * i + (decoded->channels == 3 ? c : 0)];
   return image;
 }
 
@@ -60,12 +46,11 @@ glm::vec3 TextureImage::at(const glm::vec2& texcoord) const {
 std::optional<TextureImage> read_texture(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  return read(path.string(), nullptr);
+  return read({path.string()});
 }
 
 std::optional<TextureImage> read_texture(std::span<const std::byte> file, const std::string& ending) {
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());  // only read
-  return read("embedded." + ending, &memory);
+  return read({"embedded." + ending, file});
 }
 
 }  // namespace splatscope::traces

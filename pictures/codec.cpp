@@ -1,0 +1,29 @@
+#include "pictures/codec.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace splatscope::pictures {
+namespace {
+
+const Codec& load() {
+  const std::filesystem::path module =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / SPLATSCOPE_MODULE;
+  void* library = ::dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  void* entry = library != nullptr ? ::dlsym(library, "splatscope_picture_codec") : nullptr;
+  if (entry == nullptr)
+    throw std::runtime_error(fmt::format("{}, expected it beside the program", ::dlerror()));
+  return reinterpret_cast<const Codec& (*)()>(entry)();
+}
+
+}  // namespace
+
+const Codec& codec() {
+  static const Codec& loaded = load();
+  return loaded;
+}
+
+}  // namespace splatscope::pictures
