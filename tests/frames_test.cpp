@@ -109,7 +109,8 @@ TEST(Frames, ClosedSurfaceComesNearTheScreenSpaceReference) {
   const Comparison eight_bit =
       compare(drawn(scene, machine::load("geforce4-ti4400").numbers).frame, reference);
   EXPECT_GT(exact.surface_pixels, 10000u);
-  EXPECT_GE(exact.psnr, 45.5);  // 45.8: a pixel of the silhouette, where quads seen edge-on are cut, is worth 0.1
+  EXPECT_GE(exact.psnr,
+            45.5);  // 45.8: a pixel of the silhouette, where quads seen edge-on are cut, is worth 0.1
   EXPECT_GE(eight_bit.psnr, 36);
   EXPECT_EQ(exact.holes, 0u);
   EXPECT_EQ(eight_bit.holes, 0u);
