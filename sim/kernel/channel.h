@@ -32,7 +32,7 @@ class Channel final : public ChannelState {
       : name_(std::move(name)),
         producer_(producer),
         consumer_(consumer),
-        crossing_(&producer.domain() != &consumer.domain()),
+        crossing_(!producer.shares_domain(consumer)),
         capacity_(static_cast<std::uint32_t>(capacity)),
         latency_(static_cast<Cycle>(latency)),
         mask_(std::bit_ceil(capacity_) - 1),

@@ -45,7 +45,8 @@ class Unit {
 
   const std::string& name() const { return name_; }
   std::uint32_t number() const { return number_; }  // in the whole machine
-  ClockDomain& domain() const { return *domain_; }
+  ClockDomain& domain() const { return *domain_; }  // once it is in one
+  bool shares_domain(const Unit& other) const { return domain_ == other.domain_; }
   void wake(Cycle at) { domain_->wake(place_, at); }
 
   // Of every retirement and every decision so far, with its cycle and in its order.
