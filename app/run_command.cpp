@@ -89,10 +89,9 @@ void run(const Options& options, bool quiet) {
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.input, loading.callback());
   loading.clear();
-  const traces::Scene* scene = map ? &studies::scene_of(opened, options.input) : nullptr;
-  traces::prepare_output_folder(options.out);
+  const traces::OutputFolder folder(options.out);
   std::optional<kernels::ScreenSpacePicture> reference;
-  if (scene) reference = studies::screen_space_reference(*scene, *map);
+  if (map) reference = studies::screen_space_reference(studies::scene_of(opened, options.input), *map);
   ProgressBar recording("recording", quiet);
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();

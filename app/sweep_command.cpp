@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
@@ -39,12 +40,12 @@ void run(const Options& options, bool quiet) {
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   std::vector<studies::SweptParameter> swept;
   for (const std::string& text : options.swept) swept.push_back(studies::swept_parameter(text));
+  std::optional<traces::OutputFolder> folder;
   ProgressBar running("running", quiet);
-  const studies::Sweep sweep =
-      studies::run_sweep(options.input, machine, swept, fidelity, options.cache, running.callback(),
-                         [&] { traces::prepare_output_folder(options.out); });
+  const studies::Sweep sweep = studies::run_sweep(options.input, machine, swept, fidelity, options.cache,
+                                                  running.callback(), [&] { folder.emplace(options.out); });
   running.clear();
-  traces::write_file(std::filesystem::path(options.out) / "results.json",
+  traces::write_file(folder->path() / "results.json",
                      studies::results_of(sweep, machine, fidelity).dump(1) + "\n");
   print(sweep);
   fmt::print("{:.1f} s; results.json in {}\n", sweep.host_seconds, options.out);

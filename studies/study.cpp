@@ -17,9 +17,7 @@ Progress part(const Progress& progress, double from, double to) {
 }
 
 Findings::Findings(std::filesystem::path folder, std::string_view title, std::string_view lead)
-    : folder_(std::move(folder)), report_(title, lead), results_(nlohmann::ordered_json::object()) {
-  traces::prepare_output_folder(folder_);
-}
+    : folder_(std::move(folder)), report_(title, lead), results_(nlohmann::ordered_json::object()) {}
 
 void Findings::result(std::string_view key, nlohmann::ordered_json value) {
   results_[std::string(key)] = std::move(value);
@@ -30,8 +28,8 @@ void Findings::say(std::string_view text) {
 }
 
 void Findings::write_picture(const std::string& name, const Image& image) const {
-  write_exr(image, folder_ / (name + ".exr"));
-  write_png(image, folder_ / (name + ".png"));
+  write_exr(image, folder_.path() / (name + ".exr"));
+  write_png(image, folder_.path() / (name + ".png"));
 }
 
 void Findings::pictures(const std::vector<Picture>& pictures) {
@@ -56,7 +54,7 @@ void Findings::compare(const std::vector<Comparison>& comparisons) {
 
 void Findings::plot(const std::string& name, const Plot& plot) {
   const std::string svg = svg_of(plot);
-  traces::write_file(folder_ / (name + ".svg"), svg);
+  traces::write_file(folder_.path() / (name + ".svg"), svg);
   report_.drawing(plot.title, svg);
 }
 
@@ -65,10 +63,10 @@ void Findings::write(double host_seconds) {
   report_.heading("The machines");
   for (const std::string_view name : machine::built_in_names())
     add_configuration(report_, machine::load(name));
-  report_.write(folder_ / "report.html");
-  traces::write_file(folder_ / "results.json", results_.dump(1) + "\n");
+  report_.write(folder_.path() / "report.html");
+  traces::write_file(folder_.path() / "results.json", results_.dump(1) + "\n");
   say(fmt::format("{:.1f} s; results.json, report.html and pictures in {}\n", host_seconds,
-                  folder_.string()));
+                  folder_.path().string()));
 }
 
 std::string names_of(std::span<const Study> studies) {

@@ -11,6 +11,7 @@
 #include "studies/image_io.h"
 #include "studies/plot.h"
 #include "studies/report.h"
+#include "traces/output_files.h"
 
 // What `reproduce` and `study` have in common: a list of studies, and one place for what they find.
 namespace splatscope::studies {
@@ -58,7 +59,7 @@ class Findings {
  private:
   void write_picture(const std::string& name, const Image& image) const;
 
-  std::filesystem::path folder_;
+  traces::OutputFolder folder_;
   Report report_;
   nlohmann::ordered_json results_;
 };

@@ -24,7 +24,7 @@ kernels::FastVolumePicture in_single(const kernels::VolumePicture& exact) {
 
 std::string run_volume(const traces::VolumeScene& scene, Precision precision,
                        const std::filesystem::path& folder, const Progress& progress) {
-  traces::prepare_output_folder(folder);
+  const traces::OutputFolder made(folder);
   const auto start = HostClock::now();
   kernels::FastVolume volume(scene.splats());
   const double classify_seconds = seconds_since(start);

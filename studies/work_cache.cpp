@@ -102,12 +102,10 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
   return key;
 }
 
-WorkCache::WorkCache(std::filesystem::path folder) : folder_(std::move(folder)) {
-  traces::prepare_output_folder(folder_);
-}
+WorkCache::WorkCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
 std::filesystem::path WorkCache::path_of(const std::string& key) const {
-  return folder_ / (key + ".work");
+  return folder_.path() / (key + ".work");
 }
 
 WorkCache::Found WorkCache::read(const std::string& key, WorkStream& stream) const {

@@ -7,6 +7,7 @@
 #include "model/command/commands.h"
 #include "model/render.h"
 #include "model/work/work.h"
+#include "traces/output_files.h"
 
 namespace splatscope::studies {
 
@@ -35,7 +36,7 @@ class WorkCache {
   std::filesystem::path path_of(const std::string& key) const;
 
  private:
-  std::filesystem::path folder_;
+  traces::OutputFolder folder_;
 };
 
 }  // namespace splatscope::studies

@@ -60,12 +60,28 @@ void write_file(const fs::path& path, std::string_view text) {
   write_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
-void prepare_output_folder(const fs::path& folder) {
+OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder, error))
-    throw UserError(folder.string(), 0, "cannot be made a folder, expected a writable place for the output");
-  OutputFile probe(folder / "probe");
+  for (fs::path folder = path_; !folder.empty() && !fs::exists(folder, error); folder = folder.parent_path())
+    made_.push_back(folder);
+  fs::create_directories(path_, error);
+  try {
+    if (!fs::is_directory(path_, error))
+      throw UserError(path_.string(), 0, "cannot be made a folder, expected a writable place for the output");
+    OutputFile probe(path_ / "probe");
+  } catch (...) {
+    take_back();
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  take_back();
+}
+
+void OutputFolder::take_back() {
+  std::error_code error;  // a folder that holds something stays: that is an error here
+  for (const fs::path& folder : made_) fs::remove(folder, error);
 }
 
 }  // namespace splatscope::traces

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string_view>
+#include <vector>
 
 // Files that appear whole or not at all.
 namespace splatscope::traces {
@@ -32,8 +33,24 @@ class OutputFile {
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-// Makes the folder and its parents where they are missing. Throws UserError where that, or a file in it,
-// cannot be made: called before long work, so that it does not end with nowhere to put its result.
-void prepare_output_folder(const std::filesystem::path& folder);
+// A folder for output. It and its parents are made where they are missing; those of them that are still empty
+// in the end go away again, so work that fails before its first file leaves nothing. Made before long work,
+// which then does not end with nowhere to put its result.
+class OutputFolder {
+ public:
+  // Throws UserError where the folder, or a file in it, cannot be made.
+  explicit OutputFolder(std::filesystem::path path);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void take_back();
+
+  std::filesystem::path path_;
+  std::vector<std::filesystem::path> made_;  // innermost first
+};
 
 }  // namespace splatscope::traces

@@ -333,15 +333,32 @@ TEST(TraceCheck, EachRuleIsChecked) {
 
 TEST(OutputFile, LeavesNothingWithoutCommit) {
   const fs::path folder = scratch("folder");
-  prepare_output_folder(folder);
+  fs::create_directory(folder);
   { OutputFile file(folder / "a.txt"); }
   EXPECT_TRUE(fs::is_empty(folder));
   write_file(folder / "a.txt", "whole");
   EXPECT_EQ(bytes_of(folder / "a.txt").size(), 5u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
-  EXPECT_THROW(prepare_output_folder(folder / "a.txt"), UserError);
-  EXPECT_THROW(prepare_output_folder(folder / "a.txt" / "b"), UserError);
   fs::remove_all(folder);
+}
+
+TEST(OutputFolder, StaysOnlyWithFilesInIt) {
+  const fs::path outer = scratch("folder");
+  { OutputFolder folder(outer / "a" / "b"); }
+  EXPECT_FALSE(fs::exists(outer));
+  {
+    OutputFolder folder(outer / "a" / "b/");
+    EXPECT_TRUE(fs::is_directory(folder.path()));
+    write_file(outer / "a" / "c.txt", "whole");
+  }
+  EXPECT_FALSE(fs::exists(outer / "a" / "b"));
+  EXPECT_TRUE(fs::exists(outer / "a" / "c.txt"));
+  fs::create_directory(outer / "empty");
+  { OutputFolder folder(outer / "empty"); }
+  EXPECT_TRUE(fs::exists(outer / "empty"));  // it was there before
+  EXPECT_THROW(OutputFolder(outer / "a" / "c.txt"), UserError);
+  EXPECT_THROW(OutputFolder(outer / "a" / "c.txt" / "d"), UserError);
+  fs::remove_all(outer);
 }
 
 }  // namespace
