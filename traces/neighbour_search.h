@@ -6,12 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "model/stop.h"
 #include "traces/scene.h"
 
 namespace splatscope::traces {
 
 // Finds the surfels nearest to a surfel. The surfels must outlive it; their positions must be finite. Several
-// threads may search at once, each with a `Found` of its own.
+// threads may search at once, each with a `Found` of its own. Throws Interrupted where it is asked to stop.
 class NeighbourSearch {
  public:
   struct Found {
@@ -40,6 +41,7 @@ class NeighbourSearch {
     std::span<const Surfel> surfels;
     std::size_t kdtree_get_point_count() const { return surfels.size(); }
     float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      stop_if_asked();  // the only place of ours in the building of the tree
       return surfels[i].position[static_cast<glm::length_t>(axis)];
     }
     template <class Box>

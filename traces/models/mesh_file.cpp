@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "model/error.h"
+#include "model/run_apart.h"
 #include "traces/models/texture_image.h"
 #include "traces/point_file.h"
 
@@ -193,7 +194,9 @@ bool is_mesh_file(const std::filesystem::path& path) {
   return ending_of(path) != ".ply" || ply_has_faces(path);
 }
 
-MeshFile read_mesh(const std::filesystem::path& path) {
+namespace {
+
+MeshFile read_whole(const std::filesystem::path& path) {
   const std::string file = path.string();
   std::error_code error;
   const bool regular = std::filesystem::is_regular_file(path, error);
@@ -220,6 +223,12 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   MeshFile result = Reader(path, *scene).read();
   result.faces_out_of_range = dropped;
   return result;
+}
+
+}  // namespace
+
+MeshFile read_mesh(const std::filesystem::path& path) {
+  return run_apart([path] { return read_whole(path); });  // assimp cannot be interrupted
 }
 
 }  // namespace splatscope::traces
