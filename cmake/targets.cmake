@@ -105,8 +105,8 @@ function(splatscope_fuzzers folder)
       target_link_options(${name} PRIVATE -fsanitize=fuzzer)
     else()
       add_executable(${name} ${source} ${CMAKE_SOURCE_DIR}/tests/fuzz/short_run.cpp)
-      # Seconds: a minute for all six.
-      add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 10)
+      # Seconds: a minute for all seven.
+      add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 8)
     endif()
     target_link_libraries(${name} PRIVATE ${ARGN} splatscope_options)
   endforeach()
