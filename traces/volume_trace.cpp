@@ -8,7 +8,6 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <optional>
 
 #include "kernels/object_space_ewa/alpha_texture.h"
@@ -18,6 +17,7 @@
 #include "kernels/splat_programs.h"
 #include "kernels/voxel_ewa/programs.h"
 #include "traces/splat_trace.h"
+#include "traces/volume_sheets.h"
 
 namespace splatscope::traces {
 namespace {
@@ -28,32 +28,6 @@ using glm::dvec3;
 
 constexpr std::uint32_t kCorners = 4, kIndices = 6;  // of a quad
 constexpr std::int16_t kCornerSigns[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-
-// What the host knows of a voxel in one view.
-struct HostVoxel {
-  bool drawn = false;
-  bool flat = false;
-  dvec3 color{};
-  double weight = 0;    // VolumeSplat's, with the slope of a flat kernel
-  double opacity = 0;   // at its centre
-  dvec2 low{}, high{};  // its rectangle, pixels
-};
-
-// Of pixels; right and bottom excluded.
-struct Rectangle {
-  int left = std::numeric_limits<int>::max(), top = left, right = 0, bottom = 0;
-
-  void add(const HostVoxel& voxel, const kernels::View& view) {
-    const auto pixel = [](double x, int size) {
-      return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size)));
-    };
-    // A pixel more: the machine's corners differ by its rounding.
-    left = std::min(left, pixel(std::floor(voxel.low.x) - 1, view.width));
-    top = std::min(top, pixel(std::floor(voxel.low.y) - 1, view.height));
-    right = std::max(right, pixel(std::ceil(voxel.high.x) + 1, view.width));
-    bottom = std::max(bottom, pixel(std::ceil(voxel.high.y) + 1, view.height));
-  }
-};
 
 class VertexWriter {
  public:
@@ -75,26 +49,19 @@ std::uint8_t byte_of(double value) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
 }
 
-// The two ways to draw a voxel.
-enum Kind : std::size_t { kShared, kOwn, kKinds };
-
-// Faint voxels beside opaque ones would have few of the 255 steps of a vertex's opacity and of the
-// interpolated alpha: each level has an eighth of the weight of the one before it as its unit, and a pixel
-// program with its own scale.
-constexpr std::size_t kLevels = 3;
-constexpr double kLevelRatio = 1.0 / 8;
-
-// What the alphas of a level are relative to.
-struct Level {
-  double weight = 0;   // the most that its vertices' opacity says
-  double opacity = 0;  // the largest at a splat's centre
-};
+// Of 255, what the pixel programs scale contributions by: each 1/sqrt 2 of the one before it.
+constexpr std::array<int, 12> kPixelSteps{255, 181, 128, 91, 64, 45, 32, 23, 16, 11, 8, 6};
 
 class Recorder {
  public:
   Recorder(const kernels::View& view, const kernels::VolumeSplats& splats,
            const VolumeTraceSettings& settings)
-      : view_(view), splats_(splats), settings_(settings), voxels_(splats.splats.size()) {}
+      : view_(view),
+        splats_(splats),
+        settings_(settings),
+        voxels_(splats.splats.size()),
+        planner_{view, settings.cutoff, settings.gains,
+                 settings.shared_variance && splats.kernels.size() == 1} {}
 
   VolumeTrace record() {
     look_at_voxels();
@@ -107,20 +74,14 @@ class Recorder {
     trace.buffers.resize(kBuffers);
     trace.programs = {
         kernels::shader_text(kernels::kVoxelGridProgram), kernels::shader_text(kernels::kVoxelProgram),
-        kernels::shader_text(kernels::kSheetProgram), kernels::shader_text(kernels::kSheetPixelProgram),
-        kernels::shader_text(kernels::kSheetClearPixelProgram)};
-    for (const Level& level : levels_) trace.programs.push_back(kernels::voxel_pixel_program(level.opacity));
+        kernels::shader_text(kernels::kSheetProgram), kernels::shader_text(kernels::kSheetPixelProgram)};
+    for (const int steps : kPixelSteps) trace.programs.push_back(kernels::voxel_pixel_program(steps));
     const double cutoff = settings_.cutoff / 2;  // c of Ren 2002, Eq. 14
     trace.textures = {kernels::alpha_texture(
         cutoff, settings_.texture_length > 0 ? settings_.texture_length : kernels::optimal_length(cutoff),
         kernels::CutoffShape::circle, settings_.texture_bits)};
-    const kernels::SheetAxis axis = kernels::sheet_axis(view_, std::nullopt);
-    const kernels::SheetOrder order = kernels::sheet_order(splats_, axis.axis);
-    const std::size_t sheets = order.first.size() - 1;
-    for (std::size_t i = 0; i < sheets; ++i) {
-      const std::size_t sheet = axis.last_is_nearest ? i : sheets - 1 - i;
-      add_sheet(
-          std::span(order.splats).subspan(order.first[sheet], order.first[sheet + 1] - order.first[sheet]));
+    for (const SheetPlan& plan : plans()) {
+      if (!plan.rectangle.empty()) add_sheet(plan);
     }
     finish_buffers();
     return std::move(result_);
@@ -128,7 +89,7 @@ class Recorder {
 
  private:
   enum BufferNumber : std::uint32_t { kSharedVertices, kOwnVertices, kSheetVertices, kIndexBuffer, kBuffers };
-  enum ProgramNumber : std::uint32_t { kSheetVertex = kKinds, kSheetPixels, kClearPixels, kVoxelPixels };
+  enum ProgramNumber : std::uint32_t { kSheetVertex = kVoxelKinds, kSheetPixels, kVoxelPixels };
 
   dmat3 object_variance(const kernels::VolumeSplat& splat) const {
     const dmat3& variance = splats_.kernels[splat.kernel];
@@ -147,16 +108,19 @@ class Recorder {
     const dvec2 reach = print->reach(settings_.cutoff);
     voxel.low = print->center - reach;
     voxel.high = print->center + reach;
-    voxel.drawn =
-        voxel.high.x > 0 && voxel.high.y > 0 && voxel.low.x < view_.width && voxel.low.y < view_.height;
+    voxel.conic = dvec3(print->conic[0][0], 2 * print->conic[0][1], print->conic[1][1]);
+    voxel.drawn = voxel.high.x > 0 && voxel.high.y > 0 && voxel.low.x < static_cast<float>(view_.width) &&
+                  voxel.low.y < static_cast<float>(view_.height);
     const dvec3 turned = view_.camera_direction(splat.normal);
     const dvec3 normal = turned == dvec3(0) ? turned : glm::normalize(turned);
     voxel.flat = splat.flatness > 0;
     voxel.color =
         kernels::shaded(settings_.light, kernels::Projection::perspective, camera, normal, splat.color);
-    voxel.weight = splat.weight;
-    if (voxel.flat) voxel.weight *= std::abs(glm::dot(normal, glm::normalize(camera)));
-    voxel.opacity = voxel.weight * print->peak * kernels::opacity_scale(view_, settings_.cutoff);
+    double weight = static_cast<double>(splat.weight);
+    if (voxel.flat) weight *= std::abs(glm::dot(normal, glm::normalize(camera)));
+    voxel.weight = static_cast<float>(weight);
+    voxel.opacity =
+        static_cast<float>(weight * print->peak * kernels::opacity_scale(view_, settings_.cutoff));
     return voxel;
   }
 
@@ -166,43 +130,42 @@ class Recorder {
     for (const HostVoxel& voxel : voxels_) {
       if (!voxel.drawn) continue;
       ++result_.splats;
-      levels_[0].weight = std::max(levels_[0].weight, voxel.weight);
+      planner_.heaviest = std::max(planner_.heaviest, static_cast<double>(voxel.weight));
     }
     result_.left_out = voxels_.size() - result_.splats;
-    for (std::size_t i = 1; i < kLevels; ++i) levels_[i].weight = kLevelRatio * levels_[i - 1].weight;
-    for (const HostVoxel& voxel : voxels_) {
-      double& opacity = levels_[level_of(voxel)].opacity;
-      if (voxel.drawn) opacity = std::max(opacity, voxel.opacity);
-    }
-    // A pixel program's constant is at most 1, and more saturates anyway; a level without voxels needs none.
-    for (Level& level : levels_) level.opacity = std::clamp(level.opacity, 1e-6, 1.0);
   }
 
-  std::size_t level_of(const HostVoxel& voxel) const {
-    std::size_t level = 0;
-    while (level + 1 < kLevels && voxel.weight <= levels_[level + 1].weight) ++level;
-    return level;
+  // Of all sheets, from back to front.
+  std::vector<SheetPlan> plans() const {
+    const kernels::SheetAxis axis = kernels::sheet_axis(view_, std::nullopt);
+    const kernels::SheetOrder order = kernels::sheet_order(splats_, axis.axis);
+    std::vector<SheetPlan> plans(order.first.size() - 1);
+    oneapi::tbb::parallel_for(std::size_t{0}, plans.size(), [&](std::size_t i) {
+      const std::size_t sheet = axis.last_is_nearest ? i : plans.size() - 1 - i;
+      plans[i] = planner_.plan(
+          voxels_,
+          std::span(order.splats).subspan(order.first[sheet], order.first[sheet + 1] - order.first[sheet]));
+    });
+    return plans;
   }
 
-  void add_sheet(std::span<const std::uint32_t> numbers) {
-    Rectangle rectangle;
-    std::array<std::array<std::vector<std::uint32_t>, kLevels>, kKinds> voxels;
-    for (const std::uint32_t k : numbers) {
-      if (!voxels_[k].drawn) continue;
-      rectangle.add(voxels_[k], view_);
-      const bool shared = settings_.shared_variance && splats_.kernels.size() == 1 && !voxels_[k].flat;
-      voxels[shared ? kShared : kOwn][level_of(voxels_[k])].push_back(k);
-    }
-    if (rectangle.right <= rectangle.left || rectangle.bottom <= rectangle.top) return;
-    const std::uint32_t base = add_rectangle(rectangle);
-    Draw clear = sheet_draw(base);
+  void add_sheet(const SheetPlan& plan) {
+    const std::uint32_t base = add_rectangle(plan.rectangle);
+    Draw clear = sheet_draw(base, 0);
     clear.target = 1;
-    clear.pixel_program = kClearPixels;
     result_.trace.commands.emplace_back(clear);
-    for (const Kind kind : {kShared, kOwn}) {
-      for (std::size_t level = 0; level < kLevels; ++level) add_voxels(kind, level, voxels[kind][level]);
+    for (std::size_t level = kVoxelLevels; level-- > 0;) {
+      if (plan.rescale[level] < 255) {
+        Draw rescale = sheet_draw(base, plan.rescale[level]);
+        rescale.target = 1;
+        rescale.state.blend = true;
+        rescale.state.source_factor = BlendFactor::zero;
+        rescale.state.destination_factor = BlendFactor::src_color;
+        result_.trace.commands.emplace_back(rescale);
+      }
+      for (const VoxelKind kind : {kSharedVariance, kOwnVariance}) add_voxels(kind, level, plan);
     }
-    Draw composite = sheet_draw(base);
+    Draw composite = sheet_draw(base, plan.composite);
     composite.source = 1;
     composite.pixel_program = kSheetPixels;
     composite.state.blend = true;
@@ -236,7 +199,8 @@ class Recorder {
     return draw;
   }
 
-  Draw sheet_draw(std::uint32_t base) const {
+  // A rectangle of the diffuse colour `steps`/255 in every channel.
+  Draw sheet_draw(std::uint32_t base, int steps) const {
     Draw draw = undepthed();
     draw.vertex_program = kSheetVertex;
     draw.vertex_buffer = kSheetVertices;
@@ -244,14 +208,20 @@ class Recorder {
     draw.attributes = {{0, VertexFormat::float3, 0}, {1, VertexFormat::float2, 12}};
     draw.base_vertex = base;
     draw.index_count = kIndices;
+    const float shade = static_cast<float>(steps) / 255;
+    draw.constants = {{shade, shade, shade, shade}};
     return draw;
   }
 
-  Draw voxel_draw(Kind kind, std::size_t level) const {
+  Draw voxel_draw(VoxelKind kind, std::size_t level, const SheetPlan& plan) const {
+    // The largest contribution of the draw; more than 1 saturates.
+    const double most = std::min(1.0, plan.gain[level] * plan.opacity[level]);
+    std::size_t program = 0;
+    while (program + 1 < kPixelSteps.size() && kPixelSteps[program + 1] >= 255 * most) ++program;
     Draw draw = undepthed();
     draw.vertex_program = static_cast<std::uint32_t>(kind);
-    draw.vertex_buffer = kind == kShared ? kSharedVertices : kOwnVertices;
-    draw.pixel_program = static_cast<std::uint32_t>(kVoxelPixels + level);
+    draw.vertex_buffer = kind == kSharedVariance ? kSharedVertices : kOwnVertices;
+    draw.pixel_program = static_cast<std::uint32_t>(kVoxelPixels + program);
     draw.texture = 0;
     draw.target = 1;
     draw.state.blend = true;
@@ -262,7 +232,7 @@ class Recorder {
           {static_cast<std::uint8_t>(input), format, static_cast<std::uint16_t>(offset)});
       offset += bytes;
     };
-    if (kind == kShared) {
+    if (kind == kSharedVariance) {
       add(kernels::kVoxelPositionInput, VertexFormat::short4, 8);
     } else {
       add(kernels::kVoxelPositionInput, VertexFormat::float3, 12);
@@ -273,50 +243,52 @@ class Recorder {
     } else {
       add(kernels::kVoxelColorInput, VertexFormat::d3dcolor, 4);
     }
-    if (kind == kOwn) {
+    if (kind == kOwnVariance) {
       for (int row = 0; row < 3; ++row) add(kernels::kVoxelVarianceInput + row, VertexFormat::float3, 12);
     }
     draw.vertex_stride = offset;
     // On a grid positions are numbers of voxels; elsewhere the general program takes object units.
-    const dvec3 scale = kind == kShared ? splats_.sheet_spacing : dvec3(1),
-                origin = kind == kShared ? splats_.low : dvec3(0);
+    const dvec3 scale = kind == kSharedVariance ? splats_.sheet_spacing : dvec3(1),
+                origin = kind == kSharedVariance ? splats_.low : dvec3(0);
     glm::dmat4 to_object(1.0);
     for (int i = 0; i < 3; ++i) {
       to_object[i][i] = scale[i];
       to_object[3][i] = origin[i];
     }
-    const double unit =
-        levels_[level].weight * kernels::opacity_scale(view_, settings_.cutoff) / levels_[level].opacity;
+    const double unit = planner_.weight_of(level) * kernels::opacity_scale(view_, settings_.cutoff) *
+                        plan.gain[level] * 255 / kPixelSteps[program];
     draw.constants = kernels::voxel_constants(
-        view_, to_object, kind == kShared ? &splats_.kernels[0] : nullptr, settings_.cutoff, unit);
+        view_, to_object, kind == kSharedVariance ? &splats_.kernels[0] : nullptr, settings_.cutoff, unit);
     return draw;
   }
 
-  void add_voxels(Kind kind, std::size_t level, std::span<const std::uint32_t> numbers) {
+  void add_voxels(VoxelKind kind, std::size_t level, const SheetPlan& plan) {
+    const std::vector<std::uint32_t>& numbers = plan.voxels[level][kind];
     if (numbers.empty()) return;
-    Draw draw = voxel_draw(kind, level);
+    Draw draw = voxel_draw(kind, level, plan);
     std::vector<std::byte>& bytes = result_.trace.buffers[draw.vertex_buffer].bytes;
     for (std::size_t first = 0; first < numbers.size(); first += kSurfelsADraw) {
       const std::size_t count = std::min(kSurfelsADraw, numbers.size() - first);
       draw.base_vertex = static_cast<std::uint32_t>(bytes.size() / draw.vertex_stride);
       draw.index_count = static_cast<std::uint32_t>(count) * kIndices;
-      for (const std::uint32_t k : numbers.subspan(first, count))
-        add_vertices(kind, levels_[level], k, bytes);
+      for (const std::uint32_t k : std::span(numbers).subspan(first, count))
+        add_vertices(kind, planner_.weight_of(level), k, bytes);
       most_quads_ = std::max(most_quads_, count);
       result_.trace.commands.emplace_back(draw);
     }
-    if (kind == kOwn) result_.flat += numbers.size();
+    if (kind == kOwnVariance) result_.flat += numbers.size();
   }
 
-  void add_vertices(Kind kind, const Level& level, std::uint32_t k, std::vector<std::byte>& bytes) {
+  // `weight`: what the vertices' opacity is relative to.
+  void add_vertices(VoxelKind kind, double weight, std::uint32_t k, std::vector<std::byte>& bytes) {
     const kernels::VolumeSplat& splat = splats_.splats[k];
     const HostVoxel& voxel = voxels_[k];
-    const double alpha = voxel.weight / level.weight;
+    const double alpha = static_cast<double>(voxel.weight) / weight;
     const dvec3 on_grid = (dvec3(splat.position) - splats_.low) / splats_.sheet_spacing;
-    const dmat3 variance = kind == kOwn ? object_variance(splat) : dmat3(1.0);
+    const dmat3 variance = kind == kOwnVariance ? object_variance(splat) : dmat3(1.0);
     VertexWriter writer(bytes);
     for (const auto& corner : kCornerSigns) {
-      if (kind == kShared) {
+      if (kind == kSharedVariance) {
         for (int i = 0; i < 3; ++i) writer.put(static_cast<std::int16_t>(std::lround(on_grid[i])));
         writer.put(std::int16_t{1});
       } else {
@@ -328,10 +300,11 @@ class Recorder {
         writer.put(voxel.color);
         writer.put(static_cast<float>(alpha));
       } else {
-        for (const double channel : {voxel.color.b, voxel.color.g, voxel.color.r, alpha})
-          writer.put(byte_of(channel));
+        for (const float channel : {voxel.color.b, voxel.color.g, voxel.color.r})
+          writer.put(byte_of(static_cast<double>(channel)));
+        writer.put(byte_of(alpha));
       }
-      if (kind == kOwn) {
+      if (kind == kOwnVariance) {
         for (int row = 0; row < 3; ++row) writer.put(variance[row]);
       }
     }
@@ -353,7 +326,7 @@ class Recorder {
   const kernels::VolumeSplats& splats_;
   const VolumeTraceSettings& settings_;
   std::vector<HostVoxel> voxels_;
-  std::array<Level, kLevels> levels_;
+  SheetPlanner planner_;
   std::size_t most_quads_ = 0;
   VolumeTrace result_;
 };

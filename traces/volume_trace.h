@@ -17,6 +17,8 @@ struct VolumeTraceSettings {
   int texture_length = 0;     // texels along an edge of the Gaussian; 0: Eq. 16's (Ren 2002)
   int texture_bits = 8;       // 1 to 16; no trace file holds more than 8
   bool float_colors = false;  // colour and opacity as four floats a vertex; else 8 bits each
+  // Adds up a sheet as strongly as its largest sum allows (volume_sheets.h); false: as it is.
+  bool gains = true;
   // Draws voxels of one variance by the program that has it in its constants; false: all by the general one.
   bool shared_variance = true;
 };
@@ -31,9 +33,9 @@ struct VolumeTrace {
 };
 
 // One frame of a perspective view. From back to front, for each sheet of the axis most parallel to the line
-// of sight: its rectangle of the off-screen surface is cleared, its splats are added up there, and the
-// rectangle is composited into the frame. Sums above 1 saturate, where the reference divides by them: keep
-// the opacity of a layer seen at the steepest slope below 1.
+// of sight: its rectangle of the off-screen surface is cleared, its splats are added up there, the faintest
+// first, and the rectangle is composited into the frame. Sums above 1 saturate, where the reference divides
+// by them: keep the opacity of a layer seen at the steepest slope below 1.
 VolumeTrace volume_trace(const kernels::View& view, const kernels::VolumeSplats& splats,
                          const VolumeTraceSettings& settings);
 

@@ -69,10 +69,12 @@ TEST(VolumeTrace, picture_is_that_of_the_software_with_the_same_sheets) {
     EXPECT_EQ(exact.splats + exact.left_out, splats.splats.size());
     EXPECT_EQ(exact.flat > 0, flat);
     const double in_float = psnr(drawn(exact.trace, exact_formats()), reference);
-    const double in_8_bits = psnr(drawn(volume_trace(view, splats, {}).trace, {}), reference);
+    NumberFormats combiners;
+    combiners.combiner = CombinerFormat::signed9;
+    const double in_8_bits = psnr(drawn(volume_trace(view, splats, {}).trace, combiners), reference);
     std::printf("%s: %.1f dB in float, %.1f dB in 8 bits\n", flat ? "flat" : "grid", in_float, in_8_bits);
     EXPECT_GT(in_float, 50);
-    EXPECT_GT(in_8_bits, 30);
+    EXPECT_GT(in_8_bits, 37);  // half of what is left are steps that fall one way or the other: 3 dB
   }
 }
 

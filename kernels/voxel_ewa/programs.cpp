@@ -47,15 +47,18 @@ std::vector<Vec4> voxel_constants(const View& view, const glm::dmat4& to_object,
   return c;
 }
 
-ShaderText voxel_pixel_program(double scale) {
-  return {"voxel.ps", fmt::format("ps_1_1\n"
-                                  "; opacity = texel * diffuse alpha * c0; colour times that\n"
-                                  "def c0, 0, 0, 0, {:.9g}\n"
-                                  "tex t0\n"
-                                  "mul r0.a, t0, v0\n"
-                                  "mul r0.a, r0, c0\n"
-                                  "mul r0.rgb, v0, r0.a\n",
-                                  scale)};
+ShaderText voxel_pixel_program(int steps) {
+  return {fmt::format("voxel_{}.ps", steps),
+          fmt::format(
+              "ps_1_1\n"
+              "; opacity = texel * diffuse alpha, colour times that; both times c0 = {}/255 at the end, as\n"
+              "; results have steps of 1/255\n"
+              "def c0, {:.9g}, {:.9g}, {:.9g}, {:.9g}\n"
+              "tex t0\n"
+              "mul r0.a, t0, v0\n"
+              "mul r0.rgb, v0, r0.a\n"
+              "mul r0, r0, c0\n",
+              steps, steps / 255.0, steps / 255.0, steps / 255.0, steps / 255.0)};
 }
 
 }  // namespace splatscope::kernels

@@ -16,7 +16,6 @@ inline constexpr std::string_view kVoxelGridProgram = "voxel_grid.vs";  // V in 
 inline constexpr std::string_view kVoxelProgram = "voxel.vs";           // V in the vertex
 inline constexpr std::string_view kSheetProgram = "sheet.vs";
 inline constexpr std::string_view kSheetPixelProgram = "sheet.ps";  // blend ONE, INV_SRC_ALPHA
-inline constexpr std::string_view kSheetClearPixelProgram = "sheet_clear.ps";
 
 // Vertex inputs of both voxel programs. A voxel is four vertices that differ only in the corner.
 enum VoxelInput : std::uint8_t {
@@ -25,7 +24,7 @@ enum VoxelInput : std::uint8_t {
   kVoxelColorInput = 2,     // r g b, and opacity in units of the draw
   kVoxelVarianceInput = 3   // to 5, of voxel.vs: float3 each, the rows of V, object units squared
 };
-// Of sheet.vs: v0, float3: clip coordinates; v1, float2: texture coordinates.
+// Of sheet.vs: v0, float3: clip coordinates; v1, float2: texture coordinates; c0 is the diffuse colour.
 
 // Constants c0 to c9 of a perspective view. `to_object`: of a vertex's position. `variance`: V of all voxels
 // of voxel_grid.vs, object units squared; null for voxel.vs. A splat ends at the radial index r = `cutoff`.
@@ -33,8 +32,8 @@ enum VoxelInput : std::uint8_t {
 std::vector<Vec4> voxel_constants(const View& view, const glm::dmat4& to_object, const glm::dmat3* variance,
                                   double cutoff, double unit);
 
-// Opacity and colour of a voxel's fragment: for blending with ONE, ONE. `scale`, at most 1, is the opacity of
-// a diffuse alpha of 1: in 8 bits most footprints would have only a few steps of their own.
-ShaderText voxel_pixel_program(double scale);
+// Opacity and colour of a voxel's fragment: for blending with ONE, ONE. `steps`/255 is the opacity of a
+// diffuse alpha of 1: in 8 bits most footprints would have only a few steps of their own.
+ShaderText voxel_pixel_program(int steps);
 
 }  // namespace splatscope::kernels

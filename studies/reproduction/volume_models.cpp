@@ -112,7 +112,7 @@ kernels::View view_from(const dvec3& eye, const dvec3& up, double degrees, int f
 }  // namespace
 
 VolumeModel volume_head(int frame, double scale) {
-  VolumeModel model{"head", "ellipsoids for the UNC head", scaled({256, 256, 108}, scale), {}, {}};
+  VolumeModel model{"head", "ellipsoids for the UNC head", scaled({256, 256, 225}, scale), {}, {}};
   const dvec3 skin(0.9, 0.65, 0.5), bone(0.95, 0.92, 0.85);
   const kernels::TransferFunction transfer({{0.06, {0, skin}},
                                             {0.12, {0.12, skin}},

@@ -6,7 +6,8 @@
 #include "kernels/reference/volume/volume_splats.h"
 #include "kernels/view.h"
 
-// Stand-ins for the three volumes of Zwicker 2002, Fig. 16: formulas, on grids of the size of the scans.
+// Stand-ins for the three volumes of Zwicker 2002, Fig. 16: formulas, on grids of the sizes
+// that the paper prints.
 namespace splatscope::studies {
 
 struct VolumeModel {

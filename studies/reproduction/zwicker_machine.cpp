@@ -139,6 +139,24 @@ void add_table(Report& report, const std::vector<VolumeRow>& rows) {
       cells);
 }
 
+std::string text_of(const std::vector<StepRow>& rows) {
+  std::string text = "zwicker-fig16 the same, dB by what is wide          sums as they are  with gains\n";
+  for (const StepRow& row : rows)
+    text +=
+        fmt::format("              {:<37} {:>16.1f} {:>11.1f}\n", row.wide, row.psnr_plain, row.psnr_gains);
+  return text;
+}
+
+nlohmann::ordered_json json_of(const std::vector<StepRow>& rows) {
+  auto list = nlohmann::ordered_json::array();
+  for (const StepRow& row : rows) {
+    list.push_back({{"wide", row.wide},
+                    {"psnr_plain_decibels", row.psnr_plain},
+                    {"psnr_gains_decibels", row.psnr_gains}});
+  }
+  return list;
+}
+
 std::string text_of(const std::vector<FormatRow>& rows) {
   std::string text = fmt::format(
       "zwicker-fig16 the engine with half the voxels and pixels along each axis, by frame format\n"
@@ -217,6 +235,32 @@ std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity, 
   return rows;
 }
 
+std::vector<StepRow> step_rows(const VolumeModel& model, const Progress& progress) {
+  const Reference reference(model);
+  const Machine machine = machine::load(kMachines[1]);
+  RenderOptions options;
+  options.record_work = false;
+  const std::array<Trace, 2> traces{traces::volume_trace(model.view, model.splats, {.gains = false}).trace,
+                                    traces::volume_trace(model.view, model.splats, {}).trace};
+  std::vector<StepRow> rows;
+  const auto add = [&](std::string wide, bool color, bool combiner, bool frame) {
+    options.formats = machine.numbers;
+    if (color) options.formats.color = ColorFormat::float32;
+    if (combiner) options.formats.combiner = CombinerFormat::float32;
+    if (frame) options.formats.frame = FrameFormat::float32;
+    rows.push_back({std::move(wide), reference.psnr_of(render(traces[0], options).frame),
+                    reference.psnr_of(render(traces[1], options).frame)});
+    if (progress) progress(static_cast<double>(rows.size()) / 6);
+  };
+  add("nothing", false, false, false);
+  add("interpolated colours, what is blended", true, false, false);
+  add("results of the pixel unit", false, true, false);
+  add("frame and sheets", false, false, true);
+  add("the first two", true, true, false);
+  add("all", true, true, true);
+  return rows;
+}
+
 void reproduce_zwicker_figure16(Findings& findings, const Progress& progress) {
   constexpr std::array kModels{volume_head, volume_engine, volume_foot};
   std::vector<VolumeRow> rows;
@@ -230,8 +274,10 @@ void reproduce_zwicker_figure16(Findings& findings, const Progress& progress) {
   }
   // A quarter of the pixels and an eighth of the voxels: the same footprints, in less time.
   const std::vector<FormatRow> formats =
-      format_rows(volume_engine(kFrame / 2, 0.5), Fidelity::throughput, part(progress, 0.75, 1));
+      format_rows(volume_engine(kFrame / 2, 0.5), Fidelity::throughput, part(progress, 0.75, 0.95));
   findings.say(text_of(formats));
+  const std::vector<StepRow> steps = step_rows(volume_engine(kFrame / 2, 0.5), part(progress, 0.95, 1));
+  findings.say(text_of(steps));
   findings.report().heading("Zwicker 2002, Fig. 16: volumes on the machines");
   for (const VolumeRow& row : rows) {
     findings.pictures(
@@ -243,6 +289,7 @@ void reproduce_zwicker_figure16(Findings& findings, const Progress& progress) {
   add_table(findings.report(), rows);
   findings.result("zwicker_fig16", list);
   findings.result("zwicker_fig16_formats", json_of(formats));
+  findings.result("zwicker_fig16_steps", json_of(steps));
 }
 
 }  // namespace splatscope::studies

@@ -46,6 +46,14 @@ struct FormatRow {
 std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity,
                                    const Progress& progress = {});
 
+// What each lossy step of the pixel pipeline costs: one made wide (binary32) at a time, the others as on the
+// GeForce4, with the sheets added up as they are and with their gains.
+struct StepRow {
+  std::string wide;
+  double psnr_plain = 0, psnr_gains = 0;  // dB
+};
+std::vector<StepRow> step_rows(const VolumeModel& model, const Progress& progress = {});
+
 void reproduce_zwicker_figure16(Findings& findings, const Progress& progress);
 
 }  // namespace splatscope::studies

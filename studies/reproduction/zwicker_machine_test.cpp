@@ -14,7 +14,7 @@ TEST(ZwickerMachine, MachinesDrawWhatTheSoftwareDoesWithTheSameSheets) {
     EXPECT_GT(row.splats, 1000u);
     EXPECT_GT(row.flat, 0u);
     EXPECT_LT(row.flat, row.splats);
-    EXPECT_GT(row.psnr_8_bits, 30);
+    EXPECT_GT(row.psnr_8_bits, 36);  // 3 dB less than measured; the measure asks for 30
     EXPECT_GT(row.psnr_float, 50);
     ASSERT_EQ(row.frames.size(), 2u);
     for (const VolumeFrame& frame : row.frames) EXPECT_GT(frame.seconds, 0);
@@ -30,6 +30,15 @@ TEST(ZwickerMachine, WiderFormatsAreNearerAndNoFaster) {
     for (std::size_t m = 0; m < 2; ++m)
       EXPECT_GE(rows[i].frames[m].seconds, 0.999 * rows[0].frames[m].seconds) << i << ": larger cache lines";
   }
+}
+
+// The pixel unit's steps cost the most; the gains of the sheets bring it back.
+TEST(ZwickerMachine, GainsBringBackWhatTheStepsOf8BitsCost) {
+  const std::vector<StepRow> rows = step_rows(volume_foot(96, 0.2));
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_GT(rows[0].psnr_gains, rows[0].psnr_plain + 5);
+  EXPECT_GT(rows[5].psnr_plain, 50) << "nothing is rounded but vertices and texels";
+  EXPECT_NEAR(rows[5].psnr_gains, rows[5].psnr_plain, 3);
 }
 
 }  // namespace

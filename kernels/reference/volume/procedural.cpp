@@ -139,7 +139,6 @@ Volume zebra_texture(int columns, int rows, int layers, double period) {
 }
 
 Volume head_stand_in(const glm::ivec3& size) {
-  // The UNC head's slices lie twice as far apart as its pixels: 108 of them for 256 x 256.
   const glm::dvec3 spacing{2.0 / size.x, 2.0 / size.y, 2.0 / size.z};
   return filled(centered_volume(size, spacing), [](const glm::dvec3& p) {
     const double value = head(p);
