@@ -123,7 +123,7 @@ class BinaryValues : public PlyValues {
 };
 
 // Where a property's value goes; nullptr: passed over.
-float* place(Surfel& s, std::string_view name) {
+float* place(Surfel& s, float& value, std::string_view name) {
   struct Named {
     std::string_view name;
     float* place;
@@ -131,7 +131,7 @@ float* place(Surfel& s, std::string_view name) {
   const Named places[] = {{"x", &s.position.x},  {"y", &s.position.y}, {"z", &s.position.z},
                           {"nx", &s.normal.x},   {"ny", &s.normal.y},  {"nz", &s.normal.z},
                           {"radius", &s.radius}, {"red", &s.color.r},  {"green", &s.color.g},
-                          {"blue", &s.color.b}};
+                          {"blue", &s.color.b},  {"value", &value}};
   for (const Named& p : places)
     if (p.name == name) return p.place;
   return nullptr;
@@ -167,28 +167,29 @@ struct Column {
   double scale;
 };
 
-std::vector<Surfel> read_surfels(PlyValues& values, const PlyElement& element) {
-  std::vector<Surfel> surfels;
-  surfels.reserve(element.count);
+void read_surfels(PlyValues& values, const PlyElement& element, bool has_values, PointFile& points) {
+  points.surfels.reserve(element.count);
+  if (has_values) points.values.reserve(element.count);
   Surfel surfel;
+  float value = 0;
   surfel.color = {1, 1, 1};
   std::vector<Column> columns;
   for (const PlyProperty& property : element.properties)
-    columns.push_back(
-        {&property, property.is_list ? nullptr : place(surfel, property.name), 1 / full_scale(property)});
+    columns.push_back({&property, property.is_list ? nullptr : place(surfel, value, property.name),
+                       1 / full_scale(property)});
   for (std::uint64_t i = 0; i < element.count; ++i) {
     stop_if_asked();
     for (const Column& column : columns) {
       if (column.property->is_list) {
         skip_list(values, *column.property);
       } else {
-        const double value = values.next(column.property->type);
-        if (column.place) *column.place = static_cast<float>(value * column.scale);
+        const double number = values.next(column.property->type);
+        if (column.place) *column.place = static_cast<float>(number * column.scale);
       }
     }
-    surfels.push_back(surfel);
+    points.surfels.push_back(surfel);
+    if (has_values) points.values.push_back(value);
   }
-  return surfels;
 }
 
 // All of a group of properties, or none: true or false.
@@ -291,7 +292,7 @@ PointFile read_ply(const std::filesystem::path& path) {
   else
     values = std::make_unique<BinaryValues>(in, file, header.encoding == PlyEncoding::binary_big_endian);
   for (auto element = header.elements.begin(); element != vertex; ++element) skip_element(*values, *element);
-  points.surfels = read_surfels(*values, *vertex);
+  read_surfels(*values, *vertex, has_group(*vertex, {"value"}, file), points);
   return points;
 }
 

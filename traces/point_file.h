@@ -14,16 +14,17 @@ struct PointFile {
   std::vector<Surfel> surfels;  // color: white where the file has none
   bool has_normals = false;     // nx ny nz; as in the file, of any length
   bool has_radii = false;       // radius
+  std::vector<float> values;    // of the property `value`, a data set's; empty where the file has none
 };
 
 inline constexpr std::uint64_t kMostSurfels = 1 << 26;  // of a file
 
 // Reads the element "vertex" of a PLY file (ASCII, or binary of either byte order): x y z, and where they are
-// there nx ny nz, radius, red green blue. Order and type of the properties are free; others, lists too, are
-// passed over, as are other elements. Colours of an integer type are divided by their full scale (ushort:
-// 65535, else 255). Throws UserError "file:line: ..." (header, ASCII) or "file: ... at byte N ..." (binary):
-// missing, truncated, not PLY, x, y or z absent, half a group given. Memory is bounded by a small multiple of
-// the file's size.
+// there nx ny nz, radius, red green blue, value. Order and type of the properties are free; others, lists
+// too, are passed over, as are other elements. Colours of an integer type are divided by their full scale
+// (ushort: 65535, else 255). Throws UserError "file:line: ..." (header, ASCII) or "file: ... at byte N ..."
+// (binary): missing, truncated, not PLY, x, y or z absent, half a group given. Memory is bounded by a small
+// multiple of the file's size.
 PointFile read_ply(const std::filesystem::path& path);
 
 // Whether a PLY file has an element "face" that is not empty: a mesh. Throws UserError where the header is

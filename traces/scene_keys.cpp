@@ -194,6 +194,9 @@ std::string expectation(const SceneKey& key) {
           [](const TransferValue&) {
             return std::string(
                 "an array of { value, opacity, color }, values rising, opacity and color from 0 to 1");
+          },
+          [](const PlacesValue& v) {
+            return fmt::format("an array of rising numbers from {:g} to {:g}", v.min, v.max);
           }},
       key.value);
 }
@@ -208,7 +211,8 @@ std::string default_text(const SceneKey& key) {
                  [](const VectorValue& v) {
                    return fmt::format("[{:g}, {:g}, {:g}]", v.initial.x, v.initial.y, v.initial.z);
                  },
-                 [](const TransferValue&) { return std::string("[]"); }},
+                 [](const TransferValue&) { return std::string("[]"); },
+                 [](const PlacesValue&) { return std::string("[]"); }},
       key.value);
 }
 
@@ -226,6 +230,7 @@ SceneSettings default_settings() {
     std::visit(Overloaded{[&](const ChoiceValue& v) { v.store(settings, v.initial); },
                           [&](const TextValue& v) { v.place(settings) = std::string(v.initial); },
                           [&](const TransferValue& v) { v.place(settings).clear(); },
+                          [&](const PlacesValue& v) { v.place(settings).clear(); },
                           [&](const auto& v) { v.place(settings) = v.initial; }},
                key.value);
   }

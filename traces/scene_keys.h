@@ -84,12 +84,18 @@ struct TransferValue {  // { value, opacity, color } each, values rising; none b
   std::vector<kernels::TransferPoint>& (*place)(SceneSettings&);
 };
 
+struct PlacesValue {  // rising numbers; none by default
+  std::vector<double>& (*place)(SceneSettings&);
+  double min, max;  // of each, both allowed
+};
+
 struct SceneKey {
   std::string_view table;
   std::string_view name;
   std::string_view unit;
   std::string_view description;
-  std::variant<RealValue, IntegerValue, BooleanValue, TextValue, ChoiceValue, VectorValue, TransferValue>
+  std::variant<RealValue, IntegerValue, BooleanValue, TextValue, ChoiceValue, VectorValue, TransferValue,
+               PlacesValue>
       value;
 };
 

@@ -64,6 +64,18 @@ struct Store {
     }
     return std::ranges::is_sorted(place, {}, &kernels::TransferPoint::value);
   }
+  bool operator()(const PlacesValue& v) const {
+    const toml::array* places = node.as_array();
+    if (!places) return false;
+    std::vector<double>& out = v.place(settings);
+    for (const toml::node& entry : *places) {
+      const auto value = entry.is_number() ? entry.value<double>() : std::nullopt;
+      if (!value || !(*value >= v.min && *value <= v.max)) return false;
+      if (!out.empty() && !(*value > out.back())) return false;
+      out.push_back(*value);
+    }
+    return true;
+  }
   bool operator()(const VectorValue& v) const { return numbers(&node, v.min, v.max, v.place(settings)); }
 
  private:

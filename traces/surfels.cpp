@@ -110,7 +110,7 @@ Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path&
   if (!source.file.empty() && !is_mesh_file(folder / source.file))
     return complete(read_ply(folder / source.file), settings);
   SampledModel sampled = sample_source(source, folder, progress);
-  Surfels result = complete({std::move(sampled.surfels), true, true}, settings);
+  Surfels result = complete({std::move(sampled.surfels), true, true, {}}, settings);
   result.mesh = sampled.mesh;
   return result;
 }

@@ -63,51 +63,81 @@ std::uintmax_t size_of(const std::filesystem::path& path, std::string_view expec
   return size;
 }
 
-void check_finite(const kernels::Volume& volume, const std::filesystem::path& path) {
-  const auto found = std::ranges::find_if(volume.values, [](float v) { return !std::isfinite(v); });
-  if (found == volume.values.end()) return;
-  const std::size_t at = static_cast<std::size_t>(found - volume.values.begin());
-  const auto columns = static_cast<std::size_t>(volume.size.x),
-             rows = static_cast<std::size_t>(volume.size.y);
+void check_finite(std::span<const float> values, const NrrdHeader& header,
+                  const std::filesystem::path& path) {
+  const auto found = std::ranges::find_if(values, [](float v) { return !std::isfinite(v); });
+  if (found == values.end()) return;
+  const std::size_t at =
+      static_cast<std::size_t>(found - values.begin()) / static_cast<std::size_t>(header.components);
+  const auto columns = static_cast<std::size_t>(header.size.x),
+             rows = static_cast<std::size_t>(header.size.y);
   throw UserError(path.string(), 0,
                   fmt::format("voxel ({}, {}, {}) is {}, expected finite values in single precision",
                               at % columns, at / columns % rows, at / columns / rows, *found));
 }
 
-}  // namespace
+struct Nrrd {
+  NrrdHeader header;
+  std::vector<float> values;
+};
 
-kernels::Volume read_nrrd(const std::filesystem::path& path) {
+Nrrd read(const std::filesystem::path& path, int components) {
   size_of(path, "a NRRD file");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw UserError(path.string(), 0, "cannot be read, expected a NRRD file");
-  const NrrdHeader header = read_nrrd_header(in, path.string());
+  Nrrd nrrd{read_nrrd_header(in, path.string(), components), {}};
+  const NrrdHeader& header = nrrd.header;
   const bool attached = header.data_file.empty();
   const std::filesystem::path data = attached ? path : path.parent_path() / header.data_file;
   const std::size_t start = (attached ? header.data_start : 0) + header.skip;
-  const std::size_t width = bytes_of(header.type), needed = header.voxels() * width;
+  const std::size_t width = bytes_of(header.type),
+                    count = header.voxels() * static_cast<std::size_t>(components);
   const std::uintmax_t there = size_of(data, "the raw data that the header names");
-  if (there < start || there - start < needed) {
+  if (there < start || there - start < count * width) {
     throw UserError(data.string(), 0,
                     fmt::format("{} bytes of data, expected {} for {} x {} x {} voxels of {} bytes",
-                                there < start ? 0 : there - start, needed, header.size.x, header.size.y,
-                                header.size.z, width));
+                                there < start ? 0 : there - start, count * width, header.size.x,
+                                header.size.y, header.size.z, width * static_cast<std::size_t>(components)));
   }
   if (!attached) in = std::ifstream(data, std::ios::binary);
   in.clear();
   in.seekg(static_cast<std::streamoff>(start));
-  kernels::Volume volume = kernels::centered_volume(header.size, header.spacing);
+  nrrd.values.resize(count);
   const bool swap = header.big_endian != (std::endian::native == std::endian::big);
   std::vector<char> bytes(kAtOnce * width);
-  for (std::size_t at = 0; at < volume.values.size(); at += kAtOnce) {
+  for (std::size_t at = 0; at < count; at += kAtOnce) {
     stop_if_asked();
-    const std::size_t count = std::min(kAtOnce, volume.values.size() - at);
-    if (!in.read(bytes.data(), static_cast<std::streamsize>(count * width))) {
+    const std::size_t part = std::min(kAtOnce, count - at);
+    if (!in.read(bytes.data(), static_cast<std::streamsize>(part * width))) {
       throw UserError(data.string(), 0, "cannot be read to its end, expected the voxels' data");
     }
-    convert(header.type, std::span(bytes).first(count * width), swap, volume.values.data() + at);
+    convert(header.type, std::span(bytes).first(part * width), swap, nrrd.values.data() + at);
   }
-  check_finite(volume, data);
+  check_finite(nrrd.values, header, data);
+  return nrrd;
+}
+
+}  // namespace
+
+kernels::Volume read_nrrd(const std::filesystem::path& path) {
+  Nrrd nrrd = read(path, 1);
+  kernels::Volume volume;
+  volume.size = nrrd.header.size;
+  volume.spacing = nrrd.header.spacing;
+  volume.origin = -0.5 * glm::dvec3(volume.size - 1) * volume.spacing;
+  volume.values = std::move(nrrd.values);
   return volume;
+}
+
+glm::dvec3 VoxelPositions::at(const glm::ivec3& voxel) const {
+  const auto place = static_cast<std::ptrdiff_t>(voxel.z) * size.y + voxel.y;
+  const float* const xyz = &values[static_cast<std::size_t>(3 * (place * size.x + voxel.x))];
+  return {xyz[0], xyz[1], xyz[2]};
+}
+
+VoxelPositions read_nrrd_positions(const std::filesystem::path& path) {
+  Nrrd nrrd = read(path, 3);
+  return {nrrd.header.size, std::move(nrrd.values)};
 }
 
 }  // namespace splatscope::traces

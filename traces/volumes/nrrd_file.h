@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/vec3.hpp>
+#include <vector>
 
 #include "kernels/reference/volume/volume.h"
 
@@ -12,5 +14,15 @@ namespace splatscope::traces {
 // (nrrd_header.h); "file: ..." where data are missing, too few, or not finite, with the voxel. Nothing is
 // allocated before the sizes agree with the file's.
 kernels::Volume read_nrrd(const std::filesystem::path& path);
+
+// Places of voxels, object units; x varies fastest, then y.
+struct VoxelPositions {
+  glm::ivec3 size{};
+  std::vector<float> values;  // x y z of each voxel, finite
+  glm::dvec3 at(const glm::ivec3& voxel) const;
+};
+
+// The same of a file with four dimensions, the first of them 3: where the voxels of a curvilinear grid stand.
+VoxelPositions read_nrrd_positions(const std::filesystem::path& path);
 
 }  // namespace splatscope::traces

@@ -128,6 +128,33 @@ TEST_F(NrrdFile, NamesTheVoxelThatIsNotFinite) {
             "a.nrrd: voxel (0, 0, 0) is inf, expected finite values in single precision");
 }
 
+TEST_F(NrrdFile, ReadsPlacesOfVoxels) {
+  const auto vectors = [](const std::string& dimension, const std::string& sizes) {
+    return "NRRD0004\ntype: float\ndimension: " + dimension + "\nsizes: " + sizes +
+           "\nencoding: raw\nendian: little\nspacings: nan 1 1 1\n\n";
+  };
+  const auto refused = [&](const std::string& bytes) {
+    try {
+      read_nrrd_positions(write("a.nrrd", bytes));
+    } catch (const UserError& error) {
+      return std::string(error.what()).substr(folder_.string().size() + 1);
+    }
+    return std::string("no error");
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const VoxelPositions positions = read_nrrd_positions(
+      write("a.nrrd", vectors("4", "3 1 2 1") + bytes_of_values<float>({1, 2, 3, 4, 5, 6})));
+  EXPECT_EQ(positions.size, glm::ivec3(1, 2, 1));
+  EXPECT_EQ(positions.at({0, 0, 0}), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(positions.at({0, 1, 0}), glm::dvec3(4, 5, 6));
+  EXPECT_EQ(refused(vectors("3", "1 2 1")), "a.nrrd:3: dimension is \"3\", expected 4");
+  EXPECT_EQ(refused(vectors("4", "1 2 1 3")), "a.nrrd:4: sizes are \"1 2 1 3\", expected 3 and three more");
+  EXPECT_EQ(refused(vectors("4", "3 1 1 1") + "abc"),
+            "a.nrrd: 3 bytes of data, expected 12 for 1 x 1 x 1 voxels of 12 bytes");
+  EXPECT_EQ(refused(vectors("4", "3 1 2 1") + bytes_of_values<float>({1, 2, 3, 4, nan, 6})),
+            "a.nrrd: voxel (0, 1, 0) is nan, expected finite values in single precision");
+}
+
 // Bytes changed at random: an error or a volume, and nothing else.
 TEST_F(NrrdFile, DamagedHeadersAreReadOrRefused) {
   constexpr unsigned kSeed = 11;

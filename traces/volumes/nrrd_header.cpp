@@ -62,7 +62,9 @@ std::vector<std::string_view> words_of(std::string_view text, std::string_view s
 // The header, line by line.
 class Reader {
  public:
-  Reader(std::istream& in, std::string_view file) : in_(in), file_(file) {}
+  Reader(std::istream& in, std::string_view file, int components) : in_(in), file_(file) {
+    header_.components = components;
+  }
 
   NrrdHeader read() {
     if (!next_line() || !line_.starts_with("NRRD000"))
@@ -118,9 +120,12 @@ class Reader {
     if (name == "type") {
       read_type(value);
     } else if (name == "dimension") {
-      if (value != "3") fail(fmt::format("dimension is \"{}\"", shown(value)), "3");
+      const std::string_view expected = header_.components > 1 ? "4" : "3";
+      if (value != expected) fail(fmt::format("dimension is \"{}\"", shown(value)), expected);
     } else if (name == "sizes") {
       read_sizes(value);
+    } else if (header_.components > 1 && (name == "spacings" || name == "space directions")) {
+      return;
     } else if (name == "spacings") {
       read_spacings(value);
     } else if (name == "space directions") {
@@ -159,7 +164,12 @@ class Reader {
   }
 
   void read_sizes(std::string_view value) {
-    const auto words = words_of(value, " \t");
+    auto words = words_of(value, " \t");
+    if (header_.components > 1) {
+      if (words.size() != 4 || words[0] != "3")
+        fail(fmt::format("sizes are \"{}\"", shown(value)), "3 and three more");
+      words.erase(words.begin());
+    }
     if (words.size() != 3) fail(fmt::format("{} sizes", words.size()), "three");
     for (int axis = 0; axis < 3; ++axis) {
       const auto size = number<int>(words[static_cast<std::size_t>(axis)]);
@@ -231,8 +241,8 @@ std::size_t bytes_of(NrrdType type) {
   return std::ranges::find(kTypes, type, &TypeNames::type)->bytes;
 }
 
-NrrdHeader read_nrrd_header(std::istream& in, std::string_view file) {
-  return Reader(in, file).read();
+NrrdHeader read_nrrd_header(std::istream& in, std::string_view file, int components) {
+  return Reader(in, file, components).read();
 }
 
 }  // namespace splatscope::traces

@@ -25,6 +25,7 @@ struct NrrdHeader {
 
   static constexpr int kMostAlong = 1 << 15;
   static constexpr std::size_t kMostVoxels = std::size_t{1} << 29;
+  int components = 1;  // 3: a first axis of three numbers a voxel
   std::size_t voxels() const {
     return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
            static_cast<std::size_t>(size.z);
@@ -35,7 +36,8 @@ std::size_t bytes_of(NrrdType type);
 
 // Reads a header up to its end, an empty line or the end of the file. `file` is for messages. Throws
 // UserError "file:line: ...": not NRRD, a field that is missing, given twice or out of range, or what this
-// reader does not do (an encoding other than raw, dimensions other than 3, several data files).
-NrrdHeader read_nrrd_header(std::istream& in, std::string_view file);
+// reader does not do (an encoding other than raw, dimensions other than 3, several data files). With three
+// `components` it expects a first axis of three, and does not look at spacings and directions.
+NrrdHeader read_nrrd_header(std::istream& in, std::string_view file, int components = 1);
 
 }  // namespace splatscope::traces

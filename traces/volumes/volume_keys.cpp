@@ -5,7 +5,7 @@ namespace {
 
 using S = SceneSettings;
 
-constexpr double kMostValue = 1e30;
+constexpr double kMostValue = 1e30, kFarthest = 1e9;
 
 kernels::PhongLight& light(S& s) {
   return s.volume.rendering.light;
@@ -24,6 +24,20 @@ std::span<const SceneKey> volume_keys() {
                    0}},
       {"volume", "voxels", "voxels", "of the generator along x, y and z; 0: its own number",
        VectorValue{[](S& s) -> glm::dvec3& { return s.volume.voxels; }, {0, 0, 0}, 0, 2048}},
+      {"volume", "x", "object units",
+       "rectilinear grid: where its voxels stand along x, as many as there are; none: evenly spaced",
+       PlacesValue{[](S& s) -> std::vector<double>& { return s.volume.x; }, -kFarthest, kFarthest}},
+      {"volume", "y", "object units", "the same along y",
+       PlacesValue{[](S& s) -> std::vector<double>& { return s.volume.y; }, -kFarthest, kFarthest}},
+      {"volume", "z", "object units", "the same along z",
+       PlacesValue{[](S& s) -> std::vector<double>& { return s.volume.z; }, -kFarthest, kFarthest}},
+      {"volume", "positions", "",
+       "curvilinear grid: where its voxels stand (NRRD, raw encoding, 4 dimensions, the first of them x y "
+       "z), "
+       "relative to the scene file",
+       TextValue{[](S& s) -> std::string& { return s.volume.positions; }, ""}},
+      {"volume", "samples", "", "irregular data in the place of a grid (PLY), relative to the scene file",
+       TextValue{[](S& s) -> std::string& { return s.volume.samples; }, ""}},
       {"volume", "transfer", "",
        "opacity of a layer of voxels and colour by value, straight lines between; none: a grey ramp",
        TransferValue{[](S& s) -> std::vector<kernels::TransferPoint>& { return s.volume.transfer; }}},

@@ -16,6 +16,9 @@ struct VolumeKeys {
   std::string file;  // empty: the generator
   VolumeGenerator generator = VolumeGenerator::marschner_lobb;
   glm::dvec3 voxels{};                           // of the generator, along x, y and z; 0: its own number
+  std::vector<double> x, y, z;                   // places of a rectilinear grid; none: evenly
+  std::string positions;                         // file of a curvilinear grid's places; empty: none
+  std::string samples;                           // file of an irregular set; empty: a grid
   std::vector<kernels::TransferPoint> transfer;  // none: a ramp over the values
   double kernel_variance = 1;
   double surface_low = 0, surface_high = 0;  // values drawn as flat kernels

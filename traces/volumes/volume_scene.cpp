@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "kernels/reference/volume/procedural.h"
@@ -13,6 +17,7 @@
 #include "traces/scene_settings.h"
 #include "traces/scene_text.h"
 #include "traces/volumes/nrrd_file.h"
+#include "traces/volumes/sample_file.h"
 
 namespace splatscope::traces {
 namespace {
@@ -74,19 +79,112 @@ kernels::TransferFunction transfer_of(const VolumeKeys& keys, const kernels::Vol
       {{first + 0.25 * (last - first), {0, glm::dvec3(0.4)}}, {last, {0.3, glm::dvec3(1)}}});
 }
 
+// Places along an axis: those of the scene, or the grid's own.
+std::vector<double> places_along(const SceneSettings& settings, const kernels::Volume& volume, int axis,
+                                 std::string_view file) {
+  const VolumeKeys& keys = settings.volume;
+  std::vector<double> places = axis == 0 ? keys.x : axis == 1 ? keys.y : keys.z;
+  const auto count = static_cast<std::size_t>(volume.size[axis]);
+  if (!places.empty() && places.size() != count) {
+    throw UserError(file, settings.volume_line,
+                    fmt::format("volume.{} has {} places, expected {}, one for each voxel", "xyz"[axis],
+                                places.size(), count));
+  }
+  if (places.empty()) {
+    for (std::size_t i = 0; i < count; ++i)
+      places.push_back(volume.origin[axis] + static_cast<double>(i) * volume.spacing[axis]);
+  }
+  return places;
+}
+
+// Of a rectilinear or curvilinear grid; empty where the grid is regular.
+kernels::VoxelPlaces places_of(const SceneSettings& settings, const kernels::Volume& volume,
+                               const std::filesystem::path& file) {
+  const VolumeKeys& keys = settings.volume;
+  const bool rectilinear = !keys.x.empty() || !keys.y.empty() || !keys.z.empty();
+  if (!rectilinear && keys.positions.empty()) return {};
+  const auto fail = [&](const std::string& what) {
+    throw UserError(file.string(), settings.volume_line, what);
+  };
+  if (rectilinear && !keys.positions.empty())
+    fail("volume.positions beside volume.x, y or z, expected the one or the other");
+  if (std::min({volume.size.x, volume.size.y, volume.size.z}) < 2)
+    fail("a grid with a single voxel along an axis, expected two where their places are given");
+  if (rectilinear) {
+    std::array<std::vector<double>, 3> along;
+    for (int axis = 0; axis < 3; ++axis)
+      along[static_cast<std::size_t>(axis)] = places_along(settings, volume, axis, file.string());
+    return [along](const glm::ivec3& voxel) {
+      return glm::dvec3(along[0][static_cast<std::size_t>(voxel.x)],
+                        along[1][static_cast<std::size_t>(voxel.y)],
+                        along[2][static_cast<std::size_t>(voxel.z)]);
+    };
+  }
+  const std::filesystem::path path = file.parent_path() / keys.positions;
+  VoxelPositions positions = read_nrrd_positions(path);
+  if (positions.size != volume.size) {
+    throw UserError(
+        path.string(), 0,
+        fmt::format("{} x {} x {} places, expected {} x {} x {}, one for each voxel", positions.size.x,
+                    positions.size.y, positions.size.z, volume.size.x, volume.size.y, volume.size.z));
+  }
+  return [positions = std::move(positions)](const glm::ivec3& voxel) { return positions.at(voxel); };
+}
+
+// Irregular data, and their values as a volume of one row.
+void read_irregular(const SceneSettings& settings, const std::filesystem::path& file, VolumeScene& scene) {
+  const VolumeKeys& keys = settings.volume;
+  if (!keys.file.empty() || !keys.positions.empty() || !keys.x.empty() || !keys.y.empty() ||
+      !keys.z.empty() || keys.voxels != glm::dvec3(0)) {
+    throw UserError(
+        file.string(), settings.volume_line,
+        "volume.samples beside a grid's keys (file, voxels, x, y, z, positions), expected the one or "
+        "the other");
+  }
+  scene.samples = read_samples(file.parent_path() / keys.samples, keys.kernel_variance);
+  scene.volume.size = {static_cast<int>(scene.samples.size()), 1, 1};
+  for (const kernels::VolumeSample& sample : scene.samples) scene.volume.values.push_back(sample.value);
+}
+
+struct Box {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+
+  void add(const glm::dvec3& place, double radius) {
+    low = glm::min(low, place - radius);
+    high = glm::max(high, place + radius);
+  }
+};
+
+Box box_of(const VolumeScene& scene) {
+  const kernels::Volume& volume = scene.volume;
+  Box box;
+  if (scene.samples.empty() && !scene.places)
+    return {volume.center() - 0.5 * volume.extent(), volume.center() + 0.5 * volume.extent()};
+  for (const kernels::VolumeSample& sample : scene.samples) box.add(sample.position, std::cbrt(sample.cell));
+  if (!scene.places) return box;
+  glm::ivec3 voxel;
+  for (voxel.z = 0; voxel.z < volume.size.z; ++voxel.z) {
+    for (voxel.y = 0; voxel.y < volume.size.y; ++voxel.y) {
+      for (voxel.x = 0; voxel.x < volume.size.x; ++voxel.x) box.add(scene.places(voxel), 0);
+    }
+  }
+  return box;
+}
+
 // The corners of the volume, as framing wants them.
-std::vector<Surfel> corners_of(const kernels::Volume& volume) {
+std::vector<Surfel> corners_of(const Box& box) {
   std::vector<Surfel> corners;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 side{corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5};
-    corners.push_back({.position = volume.center() + side * volume.extent()});
+    const glm::dvec3 place{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                           corner & 4 ? box.high.z : box.low.z};
+    corners.push_back({.position = place});
   }
   return corners;
 }
 
-kernels::View view_of(SceneSettings& settings, const kernels::Volume& volume, std::string_view file) {
+kernels::View view_of(SceneSettings& settings, const Box& box, std::string_view file) {
   const Frame frame{settings.width, settings.height};
-  frame_camera(corners_of(volume), frame, settings.camera_given, settings.camera);
+  frame_camera(corners_of(box), frame, settings.camera_given, settings.camera);
   check_camera(settings, file);
   const Camera& camera = settings.camera;
   return kernels::look_at(camera.eye, camera.target, camera.up, camera.fov_y_degrees, frame.width,
@@ -105,17 +203,52 @@ VolumeScene parse_volume_scene(std::string_view text, const std::filesystem::pat
     throw UserError(file.string(), settings.volume_line, "volume.light is zero, expected a direction");
   }
   keys.rendering.light.toward_light = glm::normalize(keys.rendering.light.toward_light);
-  kernels::Volume volume = volume_of(settings, file);
-  kernels::TransferFunction transfer = transfer_of(keys, volume);
-  const kernels::View view = view_of(settings, volume, file.string());
-  return {file.stem().string(),
-          std::move(volume),
-          std::move(transfer),
-          keys.kernel_variance,
-          {.low = keys.surface_low, .high = keys.surface_high, .s = keys.surface_flatness},
-          view,
-          keys.rendering,
-          keys.background};
+  VolumeScene scene;
+  scene.name = file.stem().string();
+  scene.file = file.string();
+  scene.line = settings.volume_line;
+  if (keys.samples.empty()) {
+    scene.volume = volume_of(settings, file);
+    scene.places = places_of(settings, scene.volume, file);
+  } else {
+    read_irregular(settings, file, scene);
+  }
+  scene.transfer = transfer_of(keys, scene.volume);
+  scene.kernel_variance = keys.kernel_variance;
+  scene.flattening = {
+      .low = keys.surface_low, .high = keys.surface_high, .s = keys.surface_flatness, .normal = {}};
+  scene.view = view_of(settings, box_of(scene), file.string());
+  scene.settings = keys.rendering;
+  scene.background = keys.background;
+  return scene;
+}
+
+kernels::VolumeSplats VolumeScene::splats() const {
+  if (samples.empty() && !places) return grid_splats(volume, transfer, kernel_variance, flattening);
+  std::vector<kernels::VolumeSample> placed;
+  if (places) {
+    const auto seen = [&](float value) { return transfer(static_cast<double>(value)).opacity > 0; };
+    placed = curvilinear_samples(volume, kernel_variance, places, seen);
+  }
+  const std::span<const kernels::VolumeSample> set = places ? placed : samples;
+  // Sheets as thick as the samples are far apart, but not more than anyone could want.
+  constexpr double kMostSheets = 4096;
+  double edges = 0;
+  Box box;
+  for (const kernels::VolumeSample& sample : set) {
+    edges += std::cbrt(sample.cell);
+    box.add(sample.position, 0);
+  }
+  const glm::dvec3 extent = set.empty() ? glm::dvec3(1.0) : box.high - box.low;
+  const double spacing = std::max({edges / static_cast<double>(std::max<std::size_t>(set.size(), 1)),
+                                   std::max({extent.x, extent.y, extent.z}) / kMostSheets, 1e-30});
+  kernels::VolumeSplats result = sample_splats(set, transfer, spacing, flattening);
+  result.empty = volume.values.size() - result.splats.size();
+  return result;
+}
+
+bool has_volume(const SceneText& scene) {
+  return parse_settings(scene.text, scene.file.string()).volume_line > 0;
 }
 
 VolumeScene load_volume_scene(const std::filesystem::path& name_or_path) {

@@ -4,28 +4,37 @@
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "kernels/reference/volume/transfer_function.h"
 #include "kernels/reference/volume/volume.h"
 #include "kernels/reference/volume/volume_rendering.h"
 #include "kernels/reference/volume/volume_splats.h"
 #include "kernels/view.h"
+#include "traces/scene_text.h"
 
 namespace splatscope::traces {
 
 // What a user wants drawn of a volume: a scene file with [volume].
 struct VolumeScene {
-  std::string name;  // the scene file's name without folder and ending
-  kernels::Volume volume;
-  kernels::TransferFunction transfer;
+  std::string name;                            // the scene file's name without folder and ending
+  std::string file;                            // for messages
+  int line = 0;                                // of [volume]
+  kernels::Volume volume;                      // of irregular data: their values in a row
+  kernels::VoxelPlaces places;                 // of a rectilinear or curvilinear grid; else empty
+  std::vector<kernels::VolumeSample> samples;  // of irregular data; else none
+  kernels::TransferFunction transfer{std::vector<kernels::TransferPoint>(1)};
   double kernel_variance = 1;
   kernels::Flattening flattening;
   kernels::View view;
   kernels::VolumeSettings settings;
   glm::dvec3 background{};
 
-  kernels::VolumeSplats splats() const { return grid_splats(volume, transfer, kernel_variance, flattening); }
+  kernels::VolumeSplats splats() const;
 };
+
+// Whether a scene has [volume]. Throws UserError as load_scene does.
+bool has_volume(const SceneText& scene);
 
 // Reads a scene file with [volume], or a ready scene by its name. What the file leaves open of the camera is
 // chosen to frame the volume's box (framing.h). Throws UserError as load_scene and read_nrrd do, and where

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
 
 #include "model/error.h"
+#include "traces/output_files.h"
 #include "traces/scene.h"
 #include "traces/scene_keys.h"
 
@@ -86,13 +91,131 @@ TEST(VolumeScene, SaysWhatIsWrong) {
   }
 }
 
+// A cube of 5 x 4 x 3 voxels, one unit apart, as each kind of data set.
+class VolumeKinds : public testing::Test {
+ protected:
+  VolumeKinds() {
+    std::filesystem::create_directories(folder_);
+    std::string nrrd =
+        "NRRD0004\ntype: float\ndimension: 4\nsizes: 3 5 4 3\nencoding: raw\nendian: little\n\n";
+    std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 60\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float radius\nproperty float value\nend_header\n";
+    for (int i = 0; i < 60; ++i) {
+      const float place[] = {static_cast<float>(i % 5) - 2, static_cast<float>(i / 5 % 4) - 1.5f,
+                             static_cast<float>(i / 20) - 1};
+      nrrd.append(reinterpret_cast<const char*>(place), sizeof place);
+      ply += fmt::format("{} {} {} 1 {}\n", place[0], place[1], place[2], i);
+    }
+    std::string values = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n\n";
+    for (int i = 0; i < 60; ++i) values += static_cast<char>(i);
+    write_file(folder_ / "places.nrrd", nrrd);
+    write_file(folder_ / "samples.ply", ply);
+    write_file(folder_ / "values.nrrd", values);
+  }
+  ~VolumeKinds() override { std::filesystem::remove_all(folder_); }
+
+  VolumeScene scene(const std::string& keys) const {
+    return parse_volume_scene(
+        "[volume]\n" + keys +
+            "transfer = [{ value = 10, opacity = 0, color = [1, 0, 0] }, { value = 50, opacity = 0.5, color "
+            "= [0, 1, 1] "
+            "}]\nambient = 1\ndiffuse = 0\nspecular = 0\n[frame]\nwidth = 40\nheight = 40\n[camera]\neye = "
+            "[4, 5, "
+            "12]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y_degrees = 35\nnear = 1\nfar = 40\n",
+        folder_ / "s.toml");
+  }
+  std::string error(const std::string& keys) const {
+    try {
+      scene(keys);
+    } catch (const UserError& error) {
+      return std::string(error.what()).substr(folder_.string().size() + 1);
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / fmt::format("splatscope-{}-kinds", ::getpid());
+};
+
+TEST_F(VolumeKinds, OneVolumeAsEachKindIsOnePicture) {
+  const auto picture = [&](const VolumeScene& s) {
+    const kernels::VolumeSplats splats = s.splats();
+    EXPECT_EQ(splats.splats.size(), 49u);
+    EXPECT_EQ(splats.empty, 11u);
+    return volume_picture(s.view, splats, s.settings).pixels;
+  };
+  const auto regular = picture(scene("file = \"values.nrrd\"\n"));
+  EXPECT_GT(regular[40 * 20 + 20].w, 0.5);
+  for (const char* keys :
+       {"file = \"values.nrrd\"\nx = [-2, -1, 0, 1, 2]\nz = [-1, 0, 1]\n",
+        "file = \"values.nrrd\"\npositions = \"places.nrrd\"\n", "samples = \"samples.ply\"\n"}) {
+    const auto other = picture(scene(keys));
+    double worst = 0;
+    for (std::size_t i = 0; i < regular.size(); ++i) {
+      for (int c = 0; c < 4; ++c) worst = std::max(worst, std::abs(other[i][c] - regular[i][c]));
+    }
+    EXPECT_LT(worst, 1e-6) << keys;  // weights are floats
+  }
+}
+
+// Twice as far apart along x, the voxels reach twice as far.
+TEST_F(VolumeKinds, RectilinearKernelsFollowTheirSpacing) {
+  const kernels::VolumeSplats splats = scene("file = \"values.nrrd\"\nx = [0, 1, 2, 4, 6]\n").splats();
+  const auto& last = splats.kernels[splats.splats.back().kernel];
+  EXPECT_DOUBLE_EQ(last[0][0], 4);
+  EXPECT_DOUBLE_EQ(last[1][1], 1);
+}
+
+// What a scene leaves open of the camera frames where the voxels stand.
+TEST_F(VolumeKinds, CamerasFrameTheirPlaces) {
+  const auto framed = [&](const std::string& keys) {
+    return parse_volume_scene("[volume]\n" + keys, folder_ / "s.toml").view.camera_space({0, 0, 0}).z;
+  };
+  const double near = framed("file = \"values.nrrd\"\npositions = \"places.nrrd\"\n");
+  EXPECT_GT(framed("file = \"values.nrrd\"\nx = [-40, -20, 0, 20, 40]\n"), 5 * near);
+  EXPECT_GT(framed("samples = \"samples.ply\"\n"), near) << "samples have an extent";
+}
+
+TEST_F(VolumeKinds, SaysWhatIsWrong) {
+  const std::string file = "file = \"values.nrrd\"\n";
+  EXPECT_EQ(error(file + "x = [0, 1]\n"), "s.toml:1: volume.x has 2 places, expected 5, one for each voxel");
+  EXPECT_EQ(error(file + "y = [0, 2, 1, 3]\n"),
+            "s.toml:3: volume.y is [ 0, 2, 1, 3 ], expected an array of rising numbers from -1e+09 to 1e+09");
+  EXPECT_EQ(error(file + "x = [0, 1, 2, 3, 4]\npositions = \"places.nrrd\"\n"),
+            "s.toml:1: volume.positions beside volume.x, y or z, expected the one or the other");
+  EXPECT_EQ(error("generator = \"constant\"\nvoxels = [5, 4, 2]\npositions = \"places.nrrd\"\n"),
+            "places.nrrd: 5 x 4 x 3 places, expected 5 x 4 x 2, one for each voxel");
+  EXPECT_EQ(error("generator = \"constant\"\nvoxels = [5, 1, 2]\nz = [0, 1]\n"),
+            "s.toml:1: a grid with a single voxel along an axis, expected two where their places are given");
+  EXPECT_EQ(
+      error(file + "samples = \"samples.ply\"\n"),
+      "s.toml:1: volume.samples beside a grid's keys (file, voxels, x, y, z, positions), expected the one or "
+      "the other");
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  const auto ply_error = [&](const std::string& text) {
+    write_file(folder_ / "bad.ply", head + text);
+    return error("samples = \"bad.ply\"\n");
+  };
+  EXPECT_EQ(ply_error("property float radius\nend_header\n0 0 0 1\n"),
+            "bad.ply: property value of element vertex is missing, expected x, y, z, value and radius");
+  EXPECT_EQ(ply_error("property float value\nend_header\n0 0 0 1\n"),
+            "bad.ply: property radius of element vertex is missing, expected x, y, z, value and radius");
+  for (const char* wrong : {"0 0 0 1 0", "0 0 nan 1 1", "0 0 0 inf 1"}) {
+    EXPECT_TRUE(
+        ply_error(std::string("property float value\nproperty float radius\nend_header\n") + wrong + "\n")
+            .starts_with("bad.ply: vertex 0 is not finite or of radius "))
+        << wrong;
+  }
+}
+
 TEST(VolumeScene, IsNoSceneOfSurfels) {
   try {
     parse_scene("\n[volume]\n", "a.toml");
     FAIL();
   } catch (const UserError& error) {
-    EXPECT_STREQ(error.what(),
-                 "a.toml:2: [volume] is drawn by `splatscope volume`, expected a scene of surfels");
+    EXPECT_STREQ(error.what(), "a.toml:2: [volume] in the place of surfels, expected a scene of surfels");
   }
 }
 

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "model/stop.h"
+
 namespace splatscope::kernels {
 namespace {
 
@@ -51,25 +53,27 @@ glm::dmat3 grid_variance(const Volume& volume, double kernel_variance) {
 }
 
 std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
-                                              glm::dvec3 (*map)(const glm::dvec3&)) {
+                                              const VoxelPlaces& places,
+                                              const std::function<bool(float)>& seen) {
   std::vector<VolumeSample> samples;
-  samples.reserve(grid.values.size());
   glm::ivec3 voxel;
   for (voxel.z = 0; voxel.z < grid.size.z; ++voxel.z) {
+    stop_if_asked();
     for (voxel.y = 0; voxel.y < grid.size.y; ++voxel.y) {
       for (voxel.x = 0; voxel.x < grid.size.x; ++voxel.x) {
-        glm::dmat3 edges;  // of the voxel's cell after the map
-        for (int axis = 0; axis < 3; ++axis) {
-          edges[axis] =
-              difference(grid, voxel, axis, [&](const glm::ivec3& at) { return map(grid.position(at)); });
-        }
-        // The gradient by the new position: the transposed inverse of the map's Jacobian.
+        if (seen && !seen(grid.value(voxel))) continue;
+        glm::dmat3 edges;  // of the voxel's cell
+        for (int axis = 0; axis < 3; ++axis) edges[axis] = difference(grid, voxel, axis, places);
+        const double cell = std::abs(glm::determinant(edges));
+        // The gradient by the place: the transposed inverse of the Jacobian.
         glm::dmat3 jacobian = edges;
         for (int axis = 0; axis < 3; ++axis) jacobian[axis] /= grid.spacing[axis];
-        samples.push_back({.position = map(grid.position(voxel)),
+        samples.push_back({.position = places(voxel),
                            .variance = kernel_variance * (edges * glm::transpose(edges)),
-                           .cell = std::abs(glm::determinant(edges)),
-                           .gradient = glm::inverse(glm::transpose(jacobian)) * gradient(grid, voxel),
+                           .cell = cell,
+                           .gradient = cell > 0
+                                           ? glm::inverse(glm::transpose(jacobian)) * gradient(grid, voxel)
+                                           : glm::dvec3(0.0),
                            .value = grid.value(voxel)});
       }
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -46,10 +47,15 @@ struct VolumeSample {
   float value = 0;
 };
 
-// A curvilinear grid: the values of `grid` with its voxels moved by `map`. V_k = D V D^T with D the map's
-// differences between a voxel's neighbours, and the cell grows by |D|.
+// Where the voxel (i, j, k) of a rectilinear or curvilinear grid stands, object units.
+using VoxelPlaces = std::function<glm::dvec3(const glm::ivec3&)>;
+
+// Such a grid: the values of `grid`, at least two voxels along each axis, with its voxels at `places`. V_k =
+// D D^T times `kernel_variance` with D the differences of places between a voxel's neighbours, the cell |D|.
+// A cell that has collapsed, as at a pole, has no gradient. Voxels whose values `seen` refuses are left out.
 std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
-                                              glm::dvec3 (*map)(const glm::dvec3&));
+                                              const VoxelPlaces& places,
+                                              const std::function<bool(float)>& seen = {});
 
 // Eq. 37: V with its extent along `normal` (of unit length) divided by s. Flat kernels along the gradient are
 // surface splats among volume splats.

@@ -168,7 +168,10 @@ constexpr double kTableError = 11.0 / 2048;
 
 TEST(FastVolume, IsThePictureOfTheDoublePrecisionRenderer) {
   const Volume head = head_stand_in({40, 40, 20});
-  const auto bent = [](const glm::dvec3& p) { return p + glm::dvec3(0.2 * p.y * p.y, 0.1 * p.x, 0); };
+  const auto bent = [&](const glm::ivec3& voxel) {
+    const glm::dvec3 p = head.position(voxel);
+    return p + glm::dvec3(0.2 * p.y * p.y, 0.1 * p.x, 0);
+  };
   const VolumeSplats cases[] = {
       grid_splats(head, kTissue),  // its z spacing is not that of x and y
       grid_splats(head, kTissue, 1, {.low = 0.6, .high = 1}),

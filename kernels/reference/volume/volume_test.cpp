@@ -51,9 +51,11 @@ TEST(Volume, FlatteningShrinksAlongTheNormalAlone) {
 }
 
 TEST(Volume, CurvilinearKernelsFollowTheMap) {
-  const auto samples = curvilinear_samples(
-      ramp(), 1, [](const glm::dvec3& p) { return glm::dvec3(p.y, 2 * p.x, p.z + 0.5 * p.y); });
   const Volume grid = ramp();
+  const auto samples = curvilinear_samples(grid, 1, [&](const glm::ivec3& voxel) {
+    const glm::dvec3 p = grid.position(voxel);
+    return glm::dvec3(p.y, 2 * p.x, p.z + 0.5 * p.y);
+  });
   ASSERT_EQ(samples.size(), grid.values.size());
   for (const VolumeSample& sample : samples) {
     EXPECT_NEAR(sample.cell, 2 * (0.5 * 1 * 2), 1e-12);  // the map doubles volumes
@@ -61,6 +63,16 @@ TEST(Volume, CurvilinearKernelsFollowTheMap) {
     // value = 2x - 3y + 5z with x = q/2, y = p, z = r - p/2
     EXPECT_NEAR(glm::length(sample.gradient - glm::dvec3(-5.5, 1, 5)), 0, 1e-6);
   }
+}
+
+TEST(Volume, CollapsedCellsHaveNeitherVolumeNorGradient) {
+  const Volume grid = ramp();
+  const auto first = [](float value) { return value == ramp().values[0]; };
+  const auto samples = curvilinear_samples(
+      grid, 1, [](const glm::ivec3& v) { return glm::dvec3(v.x, v.x, v.z); }, first);
+  ASSERT_EQ(samples.size(), 1u) << "the others are not seen";
+  EXPECT_EQ(samples[0].cell, 0);
+  EXPECT_EQ(samples[0].gradient, glm::dvec3(0));
 }
 
 TEST(Volume, ProceduralOnesHoldFiniteValuesFromZeroToOne) {
