@@ -5,9 +5,10 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "model/error.h"
 #include "model/machine/machine.h"
+#include "studies/run.h"
 #include "traces/output_files.h"
-#include "traces/recorder.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::app {
@@ -20,19 +21,21 @@ struct Options {
 };
 
 void record(const Options& options, bool quiet) {
-  const NumberFormats numbers = machine::load(options.machine).numbers;
+  const Machine machine = machine::load(options.machine);
   ProgressBar loading("loading", quiet);
-  const traces::Scene scene = traces::load_scene(options.scene, loading.callback());
+  auto opened = studies::open_input(options.scene, loading.callback());
   loading.clear();
+  if (std::holds_alternative<Trace>(opened))
+    throw UserError(options.scene, 0, "is a trace already, expected a scene");
   { const traces::OutputFile writable(options.out); }  // before the work, not after it
-  traces::Recording recording;
-  {
-    ProgressBar progress("recording", quiet);
-    recording = traces::record(scene, numbers, progress.callback());
-  }
-  traces::write_trace(recording.trace, options.out);
-  std::cout << fmt::format("{}: {} surfels, {}\n", options.out, recording.counts.surfels,
-                           traces::describe(scene.skipped));
+  ProgressBar recording("recording", quiet);
+  const studies::Input input =
+      studies::make_input(std::move(opened), options.scene, machine, recording.callback());
+  recording.clear();
+  traces::write_trace(input.trace, options.out);
+  std::cout << (input.volume ? fmt::format("{}: {}\n", options.out, traces::describe(*input.volume))
+                             : fmt::format("{}: {} surfels, {}\n", options.out, input.recorded->surfels,
+                                           traces::describe(input.skipped)));
 }
 
 }  // namespace

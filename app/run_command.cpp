@@ -42,6 +42,7 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
         "of the box\n",
         input.recorded->weights_captured, input.recorded->weights_at_edges,
         input.recorded->weights_by_default, input.recorded->weights_outside_box);
+  if (input.volume) std::cout << fmt::format("  {}\n", traces::describe(*input.volume));
   if (input.mesh.triangles > 0) std::cout << fmt::format("  {}\n", traces::describe(input.mesh));
   const RenderCounters& c = run.rendered.counters;
   std::cout << fmt::format(
@@ -63,6 +64,11 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
 }
 
 void print(const studies::Comparison& c) {
+  if (c.pixels_off_edges == 0) {
+    std::cout << fmt::format("  against the reference: PSNR {:.1f} dB over {} pixels, at worst {:.0f}/255\n",
+                             c.psnr, c.surface_pixels, c.worst);
+    return;
+  }
   std::cout << fmt::format(
       "  against the reference: PSNR {:.1f} dB over {} pixels, {:.1f} dB over the {} of them off edges, at "
       "worst {:.0f}/255, {} of {} pixels inside the silhouette are holes\n",
@@ -89,9 +95,10 @@ void run(const Options& options, bool quiet) {
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.input, loading.callback());
   loading.clear();
+  if (map) studies::expect_scene(opened, options.input);
   const traces::OutputFolder folder(options.out);
   std::optional<kernels::ScreenSpacePicture> reference;
-  if (map) reference = studies::screen_space_reference(studies::scene_of(opened, options.input), *map);
+  if (map) reference = studies::reference_of(opened, *map);
   ProgressBar recording("recording", quiet);
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 
 #include "model/error.h"
 #include "studies/measure.h"
@@ -155,6 +156,19 @@ kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene,
                                     .map = map,
                                     .depth_offset = scene.splatting.depth_offset,
                                     .cull_back_faces = scene.splatting.faces == traces::Faces::front});
+}
+
+kernels::ScreenSpacePicture volume_reference(const traces::VolumeScene& scene) {
+  const kernels::VolumePicture picture = volume_picture(scene.view, scene.splats(), scene.settings);
+  kernels::ScreenSpacePicture reference;
+  reference.width = picture.width;
+  reference.height = picture.height;
+  for (const glm::dvec4& pixel : picture.pixels) {
+    reference.sums.emplace_back(glm::dvec3(pixel), pixel.w > 0.5 / 255 ? 1 : 0);
+    reference.normalized.push_back(glm::min(glm::dvec3(pixel) + (1 - pixel.w) * scene.background, 1.0));
+  }
+  reference.depth.assign(picture.pixels.size(), std::numeric_limits<double>::infinity());
+  return reference;
 }
 
 double psnr(const Frame& frame, const kernels::SplatSums& reference) {

@@ -9,6 +9,7 @@
 #include "model/output/frame.h"
 #include "studies/image_io.h"
 #include "traces/scene.h"
+#include "traces/volumes/volume_scene.h"
 
 // A simulated picture against the double-precision reference of the same scene.
 namespace splatscope::studies {
@@ -38,6 +39,10 @@ kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene,
 kernels::ScreenSpacePicture screen_space_reference(const traces::Scene& scene,
                                                    std::span<const kernels::Surfel> surfels,
                                                    kernels::ScreenMap map = kernels::ScreenMap::affine);
+
+// The reference of a volume: in double precision, with the same sheets, over its background. It has no depth:
+// every pixel is one at an edge. The weight is 1 where the volume covers a pixel by half a step of 8 bits.
+kernels::ScreenSpacePicture volume_reference(const traces::VolumeScene& scene);
 
 // Peak signal-to-noise ratio in dB of r, g and b over the pixels that the surface covers: those where the
 // summed weights are at least half of what they are in its inside. Splats reach further, but there is no

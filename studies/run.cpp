@@ -15,6 +15,7 @@
 #include "studies/roofline.h"
 #include "studies/work_queue.h"
 #include "traces/output_files.h"
+#include "traces/scene_text.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::studies {
@@ -167,6 +168,14 @@ Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts
             {"zero_normal", skipped.zero_normal}}}};
 }
 
+Json volume_json(const traces::VolumeCounts& counts) {
+  return {{"splats", counts.splats},
+          {"flat_splats", counts.flat},
+          {"left_out", counts.left_out},
+          {"sheets", counts.sheets},
+          {"vertex_bytes", counts.vertex_bytes}};
+}
+
 }  // namespace
 
 Fidelity fidelity_by_name(std::string_view name) {
@@ -186,24 +195,33 @@ std::string_view name(Fidelity fidelity) {
   throw ModelError("a fidelity without a name");
 }
 
-std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace, const Progress& progress) {
+Opened open_input(const std::string& scene_or_trace, const Progress& progress) {
   if (std::filesystem::path(scene_or_trace).extension() == ".trace")
     return traces::read_trace(scene_or_trace);
+  const traces::SceneText text = traces::read_scene_text(scene_or_trace);
+  if (traces::has_volume(text)) return traces::parse_volume_scene(text.text, text.file);
   return traces::load_scene(scene_or_trace, progress);
 }
 
-const traces::Scene& scene_of(const std::variant<Trace, traces::Scene>& opened, const std::string& name) {
-  const auto* scene = std::get_if<traces::Scene>(&opened);
-  if (!scene) throw UserError(name, 0, "a trace has no surfels to draw a reference of, expected a scene");
-  return *scene;
+void expect_scene(const Opened& opened, const std::string& name) {
+  if (std::holds_alternative<Trace>(opened))
+    throw UserError(name, 0, "a trace has no surfels to draw a reference of, expected a scene");
 }
 
-Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& name, const Machine& machine,
-                 const Progress& progress) {
-  if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}, {}};
+kernels::ScreenSpacePicture reference_of(const Opened& opened, kernels::ScreenMap map) {
+  if (const auto* volume = std::get_if<traces::VolumeScene>(&opened)) return volume_reference(*volume);
+  return screen_space_reference(std::get<traces::Scene>(opened), map);
+}
+
+Input make_input(Opened opened, const std::string& name, const Machine& machine, const Progress& progress) {
+  if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}, {}, {}};
+  if (const auto* scene = std::get_if<traces::VolumeScene>(&opened)) {
+    traces::VolumeTrace recorded = traces::record(*scene);
+    return {scene->name, std::move(recorded.trace), {}, {}, {}, recorded};
+  }
   const traces::Scene& scene = std::get<traces::Scene>(opened);
   traces::Recording recording = traces::record(scene, machine.numbers, progress);
-  return {scene.name, std::move(recording.trace), recording.counts, scene.skipped, scene.mesh};
+  return {scene.name, std::move(recording.trace), recording.counts, scene.skipped, scene.mesh, {}};
 }
 
 sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
@@ -358,6 +376,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   if (!run.heat_maps.empty()) results["heat_maps"] = json_of(run.heat_maps);
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
+  if (input.volume) results["volume"] = volume_json(*input.volume);
   if (run.reference) results["reference"] = reference_json(run.rendered.frame, *run.reference);
   results["host"] = {{"seconds", run.host_seconds}};
   if (run.timing) {

@@ -16,6 +16,7 @@
 #include "studies/image_io.h"
 #include "studies/study.h"
 #include "traces/recorder.h"
+#include "traces/volume_trace.h"
 
 // The frames of a scene or a trace on one machine.
 namespace splatscope::studies {
@@ -36,19 +37,24 @@ struct Input {
   std::optional<traces::RecordCounts> recorded;
   traces::SkipCounts skipped;
   traces::MeshCounts mesh;
+  std::optional<traces::VolumeCounts> volume;
 };
 
-// A trace file (".trace"), a scene file, or a ready scene by its name: read and checked.
-std::variant<Trace, traces::Scene> open_input(const std::string& scene_or_trace,
-                                              const Progress& progress = {});
+// A trace, or a scene of surfels or with a volume.
+using Opened = std::variant<Trace, traces::Scene, traces::VolumeScene>;
 
-// The scene that was opened. Throws UserError for a trace, which knows no surfels: a reference has nothing to
-// draw.
-const traces::Scene& scene_of(const std::variant<Trace, traces::Scene>& opened, const std::string& name);
+// A trace file (".trace"), a scene file, or a ready scene by its name: read and checked.
+Opened open_input(const std::string& scene_or_trace, const Progress& progress = {});
+
+// Throws UserError for a trace, which knows nothing to draw a reference of.
+void expect_scene(const Opened& opened, const std::string& name);
+
+// What the frame of a scene should be: surfels by `map`, a volume in software with the same sheets.
+kernels::ScreenSpacePicture reference_of(const Opened& opened, kernels::ScreenMap map);
 
 // A scene is recorded for `machine`, whose number formats the captured weights depend on. `name` is a
 // trace's.
-Input make_input(std::variant<Trace, traces::Scene> opened, const std::string& name, const Machine& machine,
+Input make_input(Opened opened, const std::string& name, const Machine& machine,
                  const Progress& progress = {});
 
 struct FrameRun {

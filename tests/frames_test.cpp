@@ -176,5 +176,28 @@ TEST(Frames, TimingDoesNotTouchThePicture) {
   EXPECT_GT(b.timing->cycles, a.timing->cycles * 3 / 2);
 }
 
+class VolumeFrame : public testing::TestWithParam<std::string> {};
+
+// A volume, which is drawn by way of an off-screen surface.
+TEST_P(VolumeFrame, IsTheSoftwaresAndSchedulersAgree) {
+  const Machine machine = machine::load(GetParam());
+  const traces::VolumeScene scene = traces::parse_volume_scene(
+      "[volume]\ngenerator = \"head\"\nvoxels = [20, 20, 9]\ncutoff = 4\nsurface_low = 0.6\n"
+      "surface_high = 1\nbackground = [0.1, 0.2, 0.3]\n[frame]\nwidth = 48\nheight = 48\n",
+      "head.toml");
+  const Trace trace = traces::record(scene).trace;
+  const FrameRun fast = run_frame(trace, machine, Fidelity::cycle);
+  const FrameRun slow = run_frame(trace, machine, Fidelity::referee);
+  EXPECT_EQ(slow.timing->event_hash, fast.timing->event_hash);
+  EXPECT_EQ(slow.timing->cycles, fast.timing->cycles);
+  EXPECT_EQ(slow.rendered.frame, fast.rendered.frame);
+  const Comparison picture = compare(fast.rendered.frame, volume_reference(scene));
+  EXPECT_GT(picture.surface_pixels, 500u);
+  EXPECT_GT(picture.psnr, 36);
+  EXPECT_NEAR(static_cast<double>(fast.rendered.frame.color(0)[2]), 0.3, 0.5 / 255) << "the background";
+}
+INSTANTIATE_TEST_SUITE_P(Machines, VolumeFrame, testing::Values("geforce4-ti4400", "radeon-8500"),
+                         [](const auto& info) { return info.index == 0 ? "geforce4" : "radeon"; });
+
 }  // namespace
 }  // namespace splatscope::studies

@@ -47,8 +47,34 @@ TEST(VolumeCommand, RefusesWhatIsNoVolume) {
   EXPECT_EQ(refused({"volume", "plane.toml"}),
             "plane.toml: has no [volume], expected a scene with a volume\n");
   EXPECT_EQ(refused({"volume", "nan.toml"}), "a.nrrd:4: 2 sizes, expected three\n");
-  EXPECT_EQ(refused({"run", "head.toml", "--fidelity", "functional"}),
-            "head.toml:1: [volume] is drawn by `splatscope volume`, expected a scene of surfels\n");
+  folder.file("swan.toml", "\n[volume]\nprefilter = \"swan\"\n");
+  EXPECT_EQ(refused({"record", "swan.toml", "-o", "swan.trace"}),
+            "swan.toml:2: volume.prefilter is not \"ewa\", expected it, the only filter of the machine's "
+            "programs\n");
+}
+
+TEST(VolumeCommand, RunsAVolumeOnTheMachine) {
+  const ScratchFolder folder;
+  folder.file("head.toml", kHead);
+  const Outcome run =
+      run_program({"run", "head.toml", "--fidelity", "throughput", "--reference"}, folder.path());
+  ASSERT_EQ(run.status, 0) << run.error;
+  EXPECT_NE(run.out.find(" splats ("), std::string::npos) << run.out;
+  const auto results = nlohmann::json::parse(text_of(folder.path() / "out/results.json"));
+  EXPECT_GT(results["volume"]["flat_splats"], 100);
+  EXPECT_GT(results["volume"]["splats"], results["volume"]["flat_splats"]);
+  EXPECT_GT(results["frames"][0]["cycles"], 1000);
+  EXPECT_GT(results["reference"]["psnr_decibels"], 36);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/report.html"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/reference.png"));
+  // What is recorded draws the same.
+  const Outcome recorded = run_program({"record", "head.toml", "-o", "head.trace"}, folder.path());
+  ASSERT_EQ(recorded.status, 0) << recorded.error;
+  EXPECT_TRUE(recorded.out.starts_with("head.trace: ")) << recorded.out;
+  const Outcome again =
+      run_program({"run", "head.trace", "--fidelity", "throughput", "--out", "again"}, folder.path());
+  ASSERT_EQ(again.status, 0) << again.error;
+  EXPECT_EQ(text_of(folder.path() / "again/frame.png"), text_of(folder.path() / "out/frame.png"));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   SceneSettings settings = parse_settings(text, file.string());
   if (settings.volume_line > 0) {
     throw UserError(file.string(), settings.volume_line,
-                    "[volume] is drawn by `splatscope volume`, expected a scene of surfels");
+                    "[volume] in the place of surfels, expected a scene of surfels");
   }
   Scene scene;
   scene.name = file.stem().string();

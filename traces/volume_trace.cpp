@@ -1,5 +1,6 @@
 #include "traces/volume_trace.h"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include "kernels/reference/volume/sheet_drawing.h"
 #include "kernels/splat_programs.h"
 #include "kernels/voxel_ewa/programs.h"
+#include "model/error.h"
 #include "traces/splat_trace.h"
 #include "traces/volume_sheets.h"
 
@@ -27,6 +29,7 @@ using glm::dvec2;
 using glm::dvec3;
 
 constexpr std::uint32_t kCorners = 4, kIndices = 6;  // of a quad
+constexpr int kMostTexels = 2048;                    // along an edge, on both cards
 constexpr std::int16_t kCornerSigns[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 
 class VertexWriter {
@@ -52,6 +55,15 @@ std::uint8_t byte_of(double value) {
 // Of 255, what the pixel programs scale contributions by: each 1/sqrt 2 of the one before it.
 constexpr std::array<int, 12> kPixelSteps{255, 181, 128, 91, 64, 45, 32, 23, 16, 11, 8, 6};
 
+// Whether all voxels have one variance, and places that a short4 holds.
+bool on_grid(const kernels::VolumeSplats& splats) {
+  if (splats.kernels.size() != 1) return false;
+  return std::ranges::all_of(splats.splats, [&](const kernels::VolumeSplat& splat) {
+    const dvec3 place = (dvec3(splat.position) - splats.low) / splats.sheet_spacing;
+    return std::max({place.x, place.y, place.z}) < 32767;
+  });
+}
+
 class Recorder {
  public:
   Recorder(const kernels::View& view, const kernels::VolumeSplats& splats,
@@ -60,8 +72,7 @@ class Recorder {
         splats_(splats),
         settings_(settings),
         voxels_(splats.splats.size()),
-        planner_{view, settings.cutoff, settings.gains,
-                 settings.shared_variance && splats.kernels.size() == 1} {}
+        planner_{view, settings.cutoff, settings.gains, settings.shared_variance && on_grid(splats)} {}
 
   VolumeTrace record() {
     look_at_voxels();
@@ -69,7 +80,8 @@ class Recorder {
     trace.width = static_cast<std::uint32_t>(view_.width);
     trace.height = static_cast<std::uint32_t>(view_.height);
     trace.surfaces = 1;
-    trace.commands.emplace_back(Clear{});
+    const glm::vec3 behind(settings_.background);
+    trace.commands.emplace_back(Clear{.color = {behind.r, behind.g, behind.b, 0}});
     if (result_.splats == 0) return std::move(result_);
     trace.buffers.resize(kBuffers);
     trace.programs = {
@@ -77,9 +89,11 @@ class Recorder {
         kernels::shader_text(kernels::kSheetProgram), kernels::shader_text(kernels::kSheetPixelProgram)};
     for (const int steps : kPixelSteps) trace.programs.push_back(kernels::voxel_pixel_program(steps));
     const double cutoff = settings_.cutoff / 2;  // c of Ren 2002, Eq. 14
-    trace.textures = {kernels::alpha_texture(
-        cutoff, settings_.texture_length > 0 ? settings_.texture_length : kernels::optimal_length(cutoff),
-        kernels::CutoffShape::circle, settings_.texture_bits)};
+    trace.textures = {kernels::alpha_texture(cutoff,
+                                             settings_.texture_length > 0
+                                                 ? settings_.texture_length
+                                                 : std::min(kernels::optimal_length(cutoff), kMostTexels),
+                                             kernels::CutoffShape::circle, settings_.texture_bits)};
     for (const SheetPlan& plan : plans()) {
       if (!plan.rectangle.empty()) add_sheet(plan);
     }
@@ -336,6 +350,23 @@ class Recorder {
 VolumeTrace volume_trace(const kernels::View& view, const kernels::VolumeSplats& splats,
                          const VolumeTraceSettings& settings) {
   return Recorder(view, splats, settings).record();
+}
+
+VolumeTrace record(const VolumeScene& scene) {
+  if (scene.settings.prefilter != kernels::VolumePrefilter::ewa) {
+    throw UserError(
+        scene.file, scene.line,
+        "volume.prefilter is not \"ewa\", expected it, the only filter of the machine's programs");
+  }
+  return volume_trace(
+      scene.view, scene.splats(),
+      {.cutoff = scene.settings.cutoff, .light = scene.settings.light, .background = scene.background});
+}
+
+std::string describe(const VolumeCounts& counts) {
+  return fmt::format("{} splats ({} flat) in {} sheets, {} left out, {:.1f} MB of vertices", counts.splats,
+                     counts.flat, counts.sheets, counts.left_out,
+                     static_cast<double>(counts.vertex_bytes) / 1e6);
 }
 
 }  // namespace splatscope::traces

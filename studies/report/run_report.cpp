@@ -30,12 +30,12 @@ void add_picture(Report& report, const FrameRun& run) {
     return;
   }
   const Comparison c = compare(run.rendered.frame, *run.reference);
-  report.comparisons({{{"frame",
-                        fmt::format("PSNR {:.1f} dB, {:.1f} dB off edges, at worst {:.0f}/255, {} holes",
-                                    c.psnr, c.psnr_off_edges, c.worst, c.holes),
-                        picture},
-                       picture_of(*run.reference),
-                       difference_picture(run.rendered.frame, *run.reference)}});
+  const std::string off_edges =
+      c.pixels_off_edges > 0 ? fmt::format(", {:.1f} dB off edges, {} holes", c.psnr_off_edges, c.holes) : "";
+  report.comparisons(
+      {{{"frame", fmt::format("PSNR {:.1f} dB, at worst {:.0f}/255{}", c.psnr, c.worst, off_edges), picture},
+        picture_of(*run.reference),
+        difference_picture(run.rendered.frame, *run.reference)}});
 }
 
 void add_times(Report& report, const sim::Result& timing) {
