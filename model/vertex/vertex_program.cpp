@@ -106,7 +106,7 @@ class VertexProgram::Execution {
     if (program_.reciprocal_bits < 24) round_reciprocal(call, lanes);
   }
 
-  const Workspace& workspace() const { return each_.workspace; }
+  Workspace& workspace() { return each_.workspace; }
 
  private:
   struct Groups {
@@ -255,8 +255,11 @@ std::vector<VertexState> VertexProgram::trace(std::span<const Vec4> constants, c
   const auto out = std::make_unique<OutputBatch>();
   std::fill_n(out->o[0][0], kOutputs * 4 * kBatch, 0.0f);
   const auto execution = std::make_unique<Execution>(*decoded_, constants, in, *out);
+  Workspace& workspace = execution->workspace();
+  // A run writes registers before it reads them; here they are looked at before.
+  for (auto& temporary : workspace.temporaries)
+    for (auto& component : temporary) component[0] = 0;
   const auto state = [&] {
-    const Workspace& workspace = execution->workspace();
     VertexState result;
     for (std::size_t c = 0; c < 4; ++c) {
       for (std::size_t r = 0; r < kTemporaries; ++r)
