@@ -35,6 +35,9 @@ std::vector<std::string> bad_values(const traces::SceneKey& key) {
             return Values{"nan",    "[nan, 0, 0]",  "[0, inf, 0]", "[0, 0, 1e300]",
                           "[0, 0]", "[0, 0, 0, 0]", "\"x\""};
           },
+          [](const traces::PlacesValue&) {
+            return Values{"nan", "\"x\"", "[nan, 1]", "[0, inf]", "[1, 0]", "[0, 0]", "[0, 1e300]"};
+          },
           [](const traces::TransferValue&) {
             return Values{"nan",
                           "\"x\"",
