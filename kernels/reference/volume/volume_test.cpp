@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -67,12 +68,16 @@ TEST(Volume, CurvilinearKernelsFollowTheMap) {
 
 TEST(Volume, CollapsedCellsHaveNeitherVolumeNorGradient) {
   const Volume grid = ramp();
-  const auto first = [](float value) { return value == ramp().values[0]; };
+  const auto first = [&](float value) { return value == grid.values[0]; };
   const auto samples = curvilinear_samples(
       grid, 1, [](const glm::ivec3& v) { return glm::dvec3(v.x, v.x, v.z); }, first);
-  ASSERT_EQ(samples.size(), 1u) << "the others are not seen";
-  EXPECT_EQ(samples[0].cell, 0);
-  EXPECT_EQ(samples[0].gradient, glm::dvec3(0));
+  const auto seen = static_cast<std::size_t>(std::ranges::count_if(grid.values, first));
+  ASSERT_LT(seen, grid.values.size());
+  EXPECT_EQ(samples.size(), seen) << "the others are not seen";
+  for (const VolumeSample& sample : samples) {
+    EXPECT_EQ(sample.cell, 0);
+    EXPECT_EQ(sample.gradient, glm::dvec3(0));
+  }
 }
 
 TEST(Volume, ProceduralOnesHoldFiniteValuesFromZeroToOne) {
