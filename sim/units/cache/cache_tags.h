@@ -25,7 +25,7 @@ class CacheTags {
 
   // Null where the line is not held.
   Way* find(std::uint32_t line) {
-    Way* set = &tags_[(line & set_mask_) * ways_];
+    Way* set = set_of(line);
     for (std::uint32_t way = 0; way < ways_; ++way) {
       if (set[way].line == line) return &set[way];
     }
@@ -33,7 +33,7 @@ class CacheTags {
   }
   // The way that `line` will have: an empty one, else the least recently used of its set.
   Way& victim(std::uint32_t line) {
-    Way* set = &tags_[(line & set_mask_) * ways_];
+    Way* set = set_of(line);
     Way* oldest = set;
     for (std::uint32_t way = 0; way < ways_; ++way) {
       if (set[way].line == kNoLine) return set[way];
@@ -56,6 +56,8 @@ class CacheTags {
   }
 
  private:
+  Way* set_of(std::uint32_t line) { return &tags_[std::size_t{line & set_mask_} * ways_]; }
+
   std::uint32_t ways_;
   std::uint32_t set_mask_;
   std::uint32_t clock_ = 0;  // of uses
