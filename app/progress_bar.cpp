@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace splatscope::app {
@@ -13,7 +14,7 @@ std::string time_left(double seconds_so_far, double fraction_done) {
   if (!(seconds_so_far >= 1 && fraction_done > 0)) return {};
   const double left = seconds_so_far / fraction_done * (1 - std::min(fraction_done, 1.0));
   if (!(left < kMost)) return {};
-  const int seconds = static_cast<int>(left + 0.5);
+  const int seconds = static_cast<int>(std::lround(left));
   if (seconds < 3600) return fmt::format("{}:{:02} left", seconds / 60, seconds % 60);
   return fmt::format("{}:{:02}:{:02} left", seconds / 3600, seconds / 60 % 60, seconds % 60);
 }

@@ -81,7 +81,11 @@ function(splatscope_tests folder)
     target_link_libraries(${folder}_tests PRIVATE ${ARGN} splatscope_options GTest::gtest_main rapidcheck)
     target_compile_definitions(${folder}_tests PRIVATE SPLATSCOPE_SOURCE="${CMAKE_SOURCE_DIR}"
                                                        SPLATSCOPE_PROGRAM="$<TARGET_FILE:splatscope>")
-    gtest_discover_tests(${folder}_tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+    set(seconds 600)
+    if(SPLATSCOPE_SANITIZE)
+      set(seconds 3600)
+    endif()
+    gtest_discover_tests(${folder}_tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${seconds})
   endif()
 endfunction()
 

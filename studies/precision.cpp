@@ -30,7 +30,7 @@ kernels::SplatSums sums_of(traces::Scene scene, double cutoff, bool circular, bo
   return screen_space_reference(scene, kernels::ScreenMap::perspective);
 }
 
-PrecisionScene with_references(std::string name, traces::Scene scene, bool one_surface) {
+PrecisionScene with_references(std::string name, const traces::Scene& scene, bool one_surface) {
   const double cutoff = scene.splatting.cutoff;
   return {std::move(name), scene, sums_of(scene, cutoff, true, one_surface),
           sums_of(scene, kFullCutoff, true, one_surface)};
@@ -121,7 +121,7 @@ Pipeline machine_pipeline() {
 PrecisionScene precision_plane(double tilt_degrees, int surfels_a_side, int frame_size) {
   const double tilt = tilt_degrees * std::numbers::pi / 180;
   const double distance = surfels_a_side;
-  traces::Scene scene = traces::parse_scene(
+  const traces::Scene scene = traces::parse_scene(
       fmt::format(
           "[surfels]\ngenerator = \"plane\"\ncolumns = {0}\nrows = {0}\nchecker_light = [0.9, 0.8, 0.7]\n"
           "checker_dark = [0.1, 0.15, 0.2]\n"
@@ -130,18 +130,18 @@ PrecisionScene precision_plane(double tilt_degrees, int surfels_a_side, int fram
           "near = 1\nfar = {4}\n",
           surfels_a_side, frame_size, distance * std::cos(tilt), distance * std::sin(tilt), 4 * distance),
       "precision-plane");
-  return with_references(fmt::format("{:.0f} deg", tilt_degrees), std::move(scene), true);
+  return with_references(fmt::format("{:.0f} deg", tilt_degrees), scene, true);
 }
 
 PrecisionScene precision_model(int surfels, int frame_size) {
   const std::filesystem::path fetched = "models/armadillo.off";
   const bool there = std::filesystem::exists(fetched);
-  traces::Scene scene = traces::parse_scene(
+  const traces::Scene scene = traces::parse_scene(
       fmt::format("[surfels]\n{}\ncount = {}\npattern = \"checker\"\n[frame]\nwidth = {}\nheight = {}\n",
                   there ? "file = \"models/armadillo.off\"" : "generator = \"torus-knot\"", surfels,
                   frame_size, frame_size),
       "precision.toml");
-  return with_references(there ? "armadillo" : "torus knot", std::move(scene), false);
+  return with_references(there ? "armadillo" : "torus knot", scene, false);
 }
 
 Frame draw(const traces::Scene& original, const Pipeline& pipeline) {

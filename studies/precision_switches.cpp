@@ -17,7 +17,7 @@ class List {
       add_one(step, fmt::format("{}", level), machine, [=](Pipeline& p) { turn(p, level); });
     }
   }
-  void add_one(std::string_view step, std::string level, std::string_view machine,
+  void add_one(std::string_view step, const std::string& level, std::string_view machine,
                std::function<void(Pipeline&)> turn, bool in_full = false) {
     switches_.push_back({std::string(step), level, level == machine, in_full, std::move(turn)});
   }
@@ -62,8 +62,8 @@ void add_colors(List& list) {
   list.add_one("combiner", "9 bits", "9 bits",
                [](Pipeline& p) { p.numbers.combiner = CombinerFormat::signed9; });
   list.add_one("combiner", "float", "", [](Pipeline& p) { p.numbers.combiner = CombinerFormat::float32; });
-  const auto frame = [&](std::string level, FrameFormat format, FrameRounding rounding) {
-    list.add_one("frame", std::move(level), "8 bits", [=](Pipeline& p) {
+  const auto frame = [&](const std::string& level, FrameFormat format, FrameRounding rounding) {
+    list.add_one("frame", level, "8 bits", [=](Pipeline& p) {
       p.numbers.frame = format;
       p.numbers.frame_rounding = rounding;
     });
@@ -95,8 +95,8 @@ void add_geometry(List& list) {
 void add_weights(List& list) {
   list.add("gamma, per pixel", {0.4, 0.5, 0.6, 0.73, 0.85, 1.0}, "0.73",
            [](Pipeline& p, double g) { p.gamma = g; });
-  const auto surfel = [&](std::string level, bool corners, double gamma) {
-    list.add_one(gamma > 0 ? "gamma, per surfel" : "weights", std::move(level), "", [=](Pipeline& p) {
+  const auto surfel = [&](const std::string& level, bool corners, double gamma) {
+    list.add_one(gamma > 0 ? "gamma, per surfel" : "weights", level, "", [=](Pipeline& p) {
       p.algorithm = Algorithm::ewa_per_surfel;
       p.corner_weights = corners;
       p.gamma = gamma;

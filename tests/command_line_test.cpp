@@ -268,7 +268,7 @@ TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {
   folder.file("wrong.toml", "[surfel]\n");
   folder.file("taken", "a file where a folder is wanted");
   const auto before = folder.names();
-  const auto refused = [&](std::vector<std::string> arguments, const std::string& part) {
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
     expect_refused(run_program(arguments, folder.path()), part);
     EXPECT_EQ(folder.names(), before);
   };

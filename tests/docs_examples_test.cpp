@@ -32,7 +32,7 @@ TEST(Documentation, ExamplesRun) {
     if (entry.path().extension() != ".md") continue;
     const ScratchFolder folder;
     for (const std::string& block : blocks_of(entry.path())) {
-      const auto script = folder.file("example.sh", "set -eu\n" + block);
+      folder.file("example.sh", "set -eu\n" + block);
       const std::string command = fmt::format("cd '{}' && PATH='{}':\"$PATH\" bash example.sh >said 2>&1",
                                               folder.path().string(), programs);
       EXPECT_EQ(0, std::system(command.c_str())) << entry.path() << ":\n"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -263,7 +264,7 @@ void write_ply(std::span<const Surfel> surfels, const std::filesystem::path& pat
     WrittenSurfel out{
         {s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z, s.radius}, {}};
     for (int i = 0; i < 3; ++i)
-      out.color[i] = static_cast<std::uint8_t>(std::clamp(s.color[i], 0.0f, 1.0f) * 255.0f + 0.5f);
+      out.color[i] = static_cast<std::uint8_t>(std::lround(std::clamp(s.color[i], 0.0f, 1.0f) * 255.0f));
     bytes.append(reinterpret_cast<const char*>(&out), kWrittenBytes);
   }
   write_file(path, bytes);

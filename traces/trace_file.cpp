@@ -165,10 +165,10 @@ class Reader {
   Draw unpack(const stored::Draw& in) {
     Draw draw;
     draw.vertex_program = in.vertex_program();
-    if (in.pixel_program()) draw.pixel_program = *in.pixel_program();
-    if (in.texture()) draw.texture = *in.texture();
+    draw.pixel_program = in.pixel_program();
+    draw.texture = in.texture();
     draw.target = in.target();
-    if (in.source()) draw.source = *in.source();
+    draw.source = in.source();
     draw.vertex_buffer = in.vertex_buffer();
     draw.vertex_stride = in.vertex_stride();
     draw.base_vertex = in.base_vertex();

@@ -12,8 +12,9 @@
 #include "model/number/simd_integer-inl.h"
 
 namespace splatscope::texture {
-float wide_texel(const Texture& texture, std::size_t index);  // of any depth
-}
+// Of any depth. Read once a target, hence declared again.  NOLINTNEXTLINE(readability-redundant-declaration)
+float wide_texel(const Texture& texture, std::size_t index);
+}  // namespace splatscope::texture
 
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::texture::HWY_NAMESPACE {

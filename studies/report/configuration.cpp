@@ -7,9 +7,10 @@ namespace splatscope::studies {
 void add_configuration(Report& report, const Machine& machine) {
   std::vector<std::vector<std::string>> rows;
   for (const machine::ParameterValue& p : machine::describe(machine)) {
-    const std::string source = p.origin.source.empty() ? "" : ": " + p.origin.source;
-    const std::string fitted = p.origin.fitted_to.empty() ? "" : " (" + p.origin.fitted_to + ")";
-    rows.push_back({p.name, p.value, p.unit, p.what, p.origin.confidence + fitted + source});
+    std::string origin = p.origin.confidence;
+    if (!p.origin.fitted_to.empty()) origin += " (" + p.origin.fitted_to + ")";
+    if (!p.origin.source.empty()) origin += ": " + p.origin.source;
+    rows.push_back({p.name, p.value, p.unit, p.what, origin});
   }
   using enum Report::Align;
   report.folded_table(

@@ -39,7 +39,7 @@ class BadInputs {
     run(what, arguments, {}, {2, 0});
   }
   // The input is right and cannot be written: exit 1.
-  void fails(const std::string& what, const std::vector<std::string>& arguments, Limits limits) {
+  void fails(const std::string& what, const std::vector<std::string>& arguments, const Limits& limits) {
     prints_ = true;  // a line for each step, before the one that fails
     run(what, arguments, limits, {1});
     prints_ = false;

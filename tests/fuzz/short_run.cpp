@@ -71,12 +71,12 @@ int main(int argc, char** argv) {
   }
   const auto seed =
       argc > 3 ? static_cast<unsigned>(std::strtoul(argv[3], nullptr, 10)) : std::random_device{}();
-  std::cout << "seed " << seed << std::endl;  // before a crash
+  std::cout << "seed " << seed << '\n' << std::flush;  // before a crash
   std::mt19937 random(seed);
   const std::vector<Input> corpus = read_corpus(argv[1]);
   if (corpus.empty()) return 1;
   for (const Input& input : corpus) run(input);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(std::atoi(argv[2]));
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(std::stoi(argv[2]));
   std::size_t runs = 0;
   for (; std::chrono::steady_clock::now() < end; ++runs) run(mutated(corpus, random));
   std::cout << runs << " mutations of " << corpus.size() << " inputs\n";

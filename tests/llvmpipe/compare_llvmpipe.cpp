@@ -79,7 +79,7 @@ int main(int count, char** arguments) {
   setenv("GALLIUM_DRIVER", "llvmpipe", 1);
   setenv("LP_NUM_THREADS", "1", 0);
   try {
-    splatscope::llvmpipe::compare(count > 1 ? std::max(1, std::atoi(arguments[1])) : 21);
+    splatscope::llvmpipe::compare(count > 1 ? std::max(1, std::stoi(arguments[1])) : 21);
   } catch (const std::exception& error) {
     fmt::print(stderr, "compare_llvmpipe: {}\n", error.what());
     return 1;

@@ -102,8 +102,9 @@ class VolumeKinds : public testing::Test {
         "ply\nformat ascii 1.0\nelement vertex 60\nproperty float x\nproperty float y\nproperty float z\n"
         "property float radius\nproperty float value\nend_header\n";
     for (int i = 0; i < 60; ++i) {
-      const float place[] = {static_cast<float>(i % 5) - 2, static_cast<float>(i / 5 % 4) - 1.5f,
-                             static_cast<float>(i / 20) - 1};
+      const int row = i / 5, layer = i / 20;
+      const float place[] = {static_cast<float>(i % 5) - 2, static_cast<float>(row % 4) - 1.5f,
+                             static_cast<float>(layer) - 1};
       nrrd.append(reinterpret_cast<const char*>(place), sizeof place);
       ply += fmt::format("{} {} {} 1 {}\n", place[0], place[1], place[2], i);
     }
