@@ -37,8 +37,7 @@ class Codec {
   virtual std::vector<std::byte> encode(const std::string& ending, const Picture& picture,
                                         bool (*asked_to_stop)()) const = 0;
   // The first channels, `most_channels` of them at most. Nothing where it is no picture, or larger than
-  // `most_side`; then
-  // `*why` is what the library says, empty where it could not open the file.
+  // `most_side`; then `*why` is what the library says, empty where it could not open the file.
   virtual std::optional<Decoded<float>> read_floats(const Source& source, std::size_t most_channels,
                                                     std::size_t most_side, std::string* why) const = 0;
   virtual std::optional<Decoded<std::uint8_t>> read_bytes(const Source& source, std::size_t most_channels,
