@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <optional>
 
 #include "model/fragment_pipe.h"
 #include "model/geometry.h"
 #include "model/output/output.h"
 #include "model/stop.h"
+#include "model/written_tiles.h"
 
 namespace splatscope {
 namespace {
@@ -31,6 +33,7 @@ struct ShadedFragments {
 // Windows of one piece of a triangle in one band.
 struct Band {
   std::size_t piece = 0;
+  bool noted = false;
   std::size_t first = 0, count = 0;  // of the batch's windows
 };
 
@@ -41,15 +44,13 @@ class Batch {
   Batch(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork* record)
       : geometry(bindings, options, primitive::Viewport{frame.width, frame.height}),
         work(record != nullptr ? *record : own_work),
-        pipe(bindings, frame, options.record_work ? &work : nullptr,
-             [this](const auto& colors, auto pixels) { take(colors, pixels); }),
+        pipe(bindings, frame, [this](const auto& colors, auto pixels) { take(colors, pixels); }),
         state_(bindings.draw.state),
         frame_(frame) {}
 
   void begin(bool write_at_once) {
     at_once = write_at_once;
-    own_work.triangles.clear();  // and keep their memory
-    own_work.quads.clear();
+    own_work.quads.clear();  // and keep their memory
     own_work.texel_blocks.clear();
     windows.clear();
     bands.clear();
@@ -94,14 +95,17 @@ class DrawStages {
   DrawStages(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
              RenderCounters& counters)
       : state_(bindings.draw.state),
-        record_(options.record_work),
+        record_(options.record),
         work_(work),
         counters_(counters),
         depth_{frame.depth,
                {frame.width, frame.height},
                frame.formats.depth,
                state_.depth_test,
-               state_.depth_write} {}
+               state_.depth_write} {
+    work_.samples_only = record_ == Record::samples;
+    if (work_.samples_only && state_.depth_write) tiles_.emplace(frame.width, frame.height);
+  }
 
   // One batch at a time.
   void test_depth(Batch& batch) {
@@ -112,8 +116,8 @@ class DrawStages {
       waiting_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    rasterize(batch, [&](std::size_t piece, std::span<const raster::Window> windows) {
-      batch.bands.push_back({piece, batch.windows.size(), windows.size()});
+    rasterize(batch, [&](std::size_t piece, bool noted, std::span<const raster::Window> windows) {
+      batch.bands.push_back({piece, noted, batch.windows.size(), windows.size()});
       batch.windows.insert(batch.windows.end(), windows.begin(), windows.end());
     });
   }
@@ -122,7 +126,7 @@ class DrawStages {
   static void shade(Batch& batch) {
     if (batch.at_once) return;
     for (const Band& band : batch.bands)
-      shade(batch, band.piece, std::span(batch.windows).subspan(band.first, band.count));
+      shade(batch, band.piece, band.noted, std::span(batch.windows).subspan(band.first, band.count));
     batch.pipe.flush_all();
   }
 
@@ -134,28 +138,28 @@ class DrawStages {
     } else {
       batch.write();
     }
-    if (record_) append(batch);
+    append(batch);
   }
 
   // All of it, where there is but one thread.
   void test_shade_and_write(Batch& batch) {
     batch.begin(true);
     do_at_once(batch);
-    if (record_) append(batch);
+    append(batch);
   }
 
  private:
-  static void shade(Batch& batch, std::size_t piece, std::span<const raster::Window> windows) {
+  static void shade(Batch& batch, std::size_t piece, bool noted, std::span<const raster::Window> windows) {
     if (!batch.pipe.began(piece)) {
       const Piece next = batch.geometry.piece(piece);
-      batch.pipe.begin(piece, next.setup, next.corners);
+      batch.pipe.begin(piece, next.setup, next.corners, noted ? &batch.work : nullptr);
     }
     batch.pipe.push_band(windows);
   }
 
   void do_at_once(Batch& batch) {
-    rasterize(batch, [&](std::size_t piece, std::span<const raster::Window> windows) {
-      shade(batch, piece, windows);
+    rasterize(batch, [&](std::size_t piece, bool noted, std::span<const raster::Window> windows) {
+      shade(batch, piece, noted, windows);
     });
     batch.pipe.flush_all();
   }
@@ -174,8 +178,14 @@ class DrawStages {
     return false;
   }
 
-  // Coverage and depth; take(piece, windows) gets the windows of each band in which there is something to
-  // shade or to record.
+  // Whether the quads of the next triangle are noted.
+  bool notes_quads() const {
+    return record_ == Record::everything ||
+           (record_ == Record::samples && is_sampled(work_.triangles.size()));
+  }
+
+  // Coverage and depth; take(piece, noted, windows) gets the windows of each band in which there is something
+  // to shade or to note.
   template <typename Take>
   void rasterize(Batch& batch, Take take) {
     counters_.vertices += batch.geometry.shaded_vertices.size();
@@ -197,21 +207,25 @@ class DrawStages {
       if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
         work.outcome = TriangleOutcome::no_coverage;
       count(work);
-      if (record_) batch.work.triangles.push_back(work);
+      if (record_ != Record::nothing) work_.triangles.push_back(work);
     }
   }
 
   template <typename Take>
   void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Take take) {
     if (!setup.covers) return;
+    const bool noted = notes_quads();
     work.tile_count += raster::tiles_touched(setup);
     for (int y = setup.top & ~1; y < setup.bottom; y += raster::kWindow) {
       const raster::BandCounts counts = raster::rasterize_band(setup, depth_, y, windows_);
       counters_.fragments += counts.covered;
       counters_.fragments_passed += counts.passed;
       work.quad_count += counts.quads;
-      if (record_ ? counts.windows != 0 : state_.color_write && counts.passed != 0)
-        take(piece, std::span<const raster::Window>(windows_).first(counts.windows));
+      work.quads_passed += counts.quads_passed;
+      const auto windows = std::span<const raster::Window>(windows_).first(counts.windows);
+      if (noted ? counts.windows != 0 : state_.color_write && counts.passed != 0) take(piece, noted, windows);
+      if (!noted && tiles_)
+        tiles_->note(windows, static_cast<std::uint32_t>(work_.triangles.size()), work_.tiles_written);
     }
   }
 
@@ -228,18 +242,18 @@ class DrawStages {
 
   void append(const Batch& batch) {
     const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
-    behind(work_.shaded_vertices, batch.geometry.shaded_vertices);
+    if (record_ == Record::everything) behind(work_.shaded_vertices, batch.geometry.shaded_vertices);
     if (&batch.work == &work_) return;
-    behind(work_.triangles, batch.work.triangles);
     behind(work_.quads, batch.work.quads);
     behind(work_.texel_blocks, batch.work.texel_blocks);
   }
 
   const DrawState& state_;
-  bool record_;
+  Record record_;
   DrawWork& work_;
   RenderCounters& counters_;
   raster::DepthTarget depth_;
+  std::optional<WrittenTiles> tiles_;
   std::array<raster::Window, raster::kMaxWindows> windows_;
   std::atomic<int> waiting_ = 0;  // batches whose depth is tested when they are written
 };

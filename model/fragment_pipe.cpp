@@ -21,11 +21,10 @@ std::uint32_t row_of(std::uint64_t pixels, unsigned row) {
 
 }  // namespace
 
-FragmentPipe::FragmentPipe(const DrawBindings& bindings, const Frame& frame, DrawWork* work, Write write)
+FragmentPipe::FragmentPipe(const DrawBindings& bindings, const Frame& frame, Write write)
     : bindings_(bindings),
       width_(frame.width),
       formats_(frame.formats),
-      work_(work),
       write_(std::move(write)),
       samples_((bindings.texture != nullptr || bindings.source != nullptr) && bindings.pixel != nullptr &&
                (bindings.pixel->texture_stages() & 1u) != 0) {
@@ -37,8 +36,10 @@ FragmentPipe::FragmentPipe(const DrawBindings& bindings, const Frame& frame, Dra
 }
 
 void FragmentPipe::begin(std::size_t piece, const raster::TriangleSetup& setup,
-                         const std::array<const raster::Attributes*, 3>& corners) {
+                         const std::array<const raster::Attributes*, 3>& corners, DrawWork* work) {
+  if (work != work_) flush();  // fragments of one batch are all noted, or none
   interpolate();
+  work_ = work;
   piece_ = piece;
   setup_ = &setup;
   corners_ = corners;

@@ -17,13 +17,13 @@ class FragmentPipe {
   using Colors = std::array<const float*, 4>;  // r, g, b, a: an array each
   using Write = std::function<void(const Colors&, std::span<const std::uint32_t> pixels)>;
 
-  // `frame`: its size and formats. `work`: where the quads are noted, with the texel blocks that each one
-  // reads; or null. `write` gets at most kCapacity fragments at a time.
-  FragmentPipe(const DrawBindings& bindings, const Frame& frame, DrawWork* work, Write write);
+  // `frame`: its size and formats. `write` gets at most kCapacity fragments at a time.
+  FragmentPipe(const DrawBindings& bindings, const Frame& frame, Write write);
 
   // Begins a piece of a triangle, which stays where it is until the next one begins or all is flushed.
+  // `work`: where its quads are noted, with the texel blocks that each one reads; or null.
   void begin(std::size_t piece, const raster::TriangleSetup& setup,
-             const std::array<const raster::Attributes*, 3>& corners);
+             const std::array<const raster::Attributes*, 3>& corners, DrawWork* work);
   bool began(std::size_t piece) const { return piece_ == piece; }
 
   // The windows of one band of the piece.
@@ -45,7 +45,7 @@ class FragmentPipe {
   const DrawBindings& bindings_;
   std::uint32_t width_;
   const NumberFormats& formats_;
-  DrawWork* work_;
+  DrawWork* work_ = nullptr;
   Write write_;
   bool samples_ = false;
   std::size_t piece_ = kNone;

@@ -121,7 +121,7 @@ class Renderer {
     work.command = static_cast<std::uint32_t>(command);
     Frame& target = draw.target == 0 ? rendered_.frame : surfaces_[draw.target - 1];
     render_draw(bindings, options_, indices_, target, work, rendered_.counters);
-    if (options_.record_work) rendered_.work.push_back(std::move(work));
+    if (options_.record != Record::nothing) rendered_.work.push_back(std::move(work));
   }
 
   static std::span<const primitive::UsedAttribute> attributes_read(const Draw& draw,

@@ -13,10 +13,13 @@
 // The whole machine as a function: a trace in, its frames and its work out. No time.
 namespace splatscope {
 
+// What is noted of the work, for the timing: nothing, all, or as much as an estimate looks at (DrawWork).
+enum class Record : std::uint8_t { nothing, samples, everything };
+
 struct RenderOptions {
   NumberFormats formats;
   int vertex_cache_entries = 18;  // post-transform FIFO; a vertex still in it is not shaded again
-  bool record_work = true;        // false: the frames alone
+  Record record = Record::everything;
 };
 
 // What became of the triangles and fragments of a trace.
@@ -36,7 +39,7 @@ struct RenderCounters {
 
 struct Rendered {
   Frame frame;                 // the last one
-  std::vector<DrawWork> work;  // one for each Draw of the trace, in order; empty without record_work
+  std::vector<DrawWork> work;  // one for each Draw of the trace, in order; empty where nothing is recorded
   RenderCounters counters;
 };
 

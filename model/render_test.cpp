@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -135,7 +136,7 @@ TEST(Render, ShadesWhatMissesTheVertexCache) {
 
 // Enough triangles for several batches in flight, on top of one another, with the depth test: small ones,
 // whose fragments wait for their turn, and between them so large ones that theirs do not.
-TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
+Trace many_triangles() {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> anywhere(-1, 1);
   constexpr std::size_t kCorner = 4, kTriangle = 3 * kCorner, kTriangles = 6000;
@@ -152,27 +153,69 @@ TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
   Trace trace = white_triangles(corners, CullMode::none);
   trace.width = trace.height = 200;
   trace.programs[0].text = "vs_1_1\nmov oPos, v0\nmov oD0, v0\n";
-  const auto on_threads = [&](std::size_t threads, bool record) {
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    RenderOptions options;
-    options.record_work = record;
-    return render(trace, options);
-  };
-  const auto quads_of = [](const Rendered& rendered) {
-    std::vector<std::array<unsigned, 4>> quads;
-    for (const QuadWork& quad : rendered.work[0].quads)
-      quads.push_back({quad.x, quad.y, quad.covered, quad.passed});
-    return quads;
-  };
-  const Rendered one = on_threads(1, true);
+  return trace;
+}
+
+Rendered on_threads(const Trace& trace, std::size_t threads, Record record) {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+  RenderOptions options;
+  options.record = record;
+  return render(trace, options);
+}
+
+std::vector<std::array<unsigned, 4>> listed(std::span<const QuadWork> quads) {
+  std::vector<std::array<unsigned, 4>> all;
+  for (const QuadWork& quad : quads) all.push_back({quad.x, quad.y, quad.covered, quad.passed});
+  return all;
+}
+
+TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
+  const Trace trace = many_triangles();
+  const Rendered one = on_threads(trace, 1, Record::everything);
   for (const std::size_t threads : {1u, 2u, 4u}) {
-    const Rendered many = on_threads(threads, true), frame_alone = on_threads(threads, false);
+    const Rendered many = on_threads(trace, threads, Record::everything),
+                   frame_alone = on_threads(trace, threads, Record::nothing);
     EXPECT_EQ(one.frame, many.frame);
     EXPECT_EQ(one.frame, frame_alone.frame);
     EXPECT_EQ(one.work[0].shaded_vertices, many.work[0].shaded_vertices);
-    EXPECT_EQ(quads_of(one), quads_of(many));
+    EXPECT_EQ(listed(one.work[0].quads), listed(many.work[0].quads));
     EXPECT_EQ(one.counters.fragments_passed, many.counters.fragments_passed);
     EXPECT_EQ(one.counters.fragments_passed, frame_alone.counters.fragments_passed);
+  }
+}
+
+// Of the triangles that are not sampled there is no quad, but every tile in which they were the first to
+// write.
+TEST(Render, SamplesOfTheWorkAreThoseOfAllOfIt) {
+  const Trace trace = many_triangles();
+  const DrawWork all = on_threads(trace, 1, Record::everything).work[0];
+  std::vector<QuadWork> sampled;
+  std::vector<std::array<std::uint32_t, 2>> first_written;
+  std::set<std::uint32_t> written;
+  auto quad = all.quads.begin();
+  for (std::uint32_t i = 0; i < all.triangles.size(); ++i) {
+    for (const auto end = quad + all.triangles[i].quad_count; quad != end; ++quad) {
+      if (is_sampled(i)) sampled.push_back(*quad);
+      const std::uint32_t tile = quad->y / 2u * (trace.width / 4) + quad->x / 2u;
+      if (!is_sampled(i) && quad->passed != 0 && written.insert(tile).second)
+        first_written.push_back({i, tile});
+    }
+  }
+  ASSERT_GT(written.size(), 2000u) << "of 2500 tiles";
+  ASSERT_GT(sampled.size(), 1500u);
+  for (const std::size_t threads : {1u, 2u, 4u}) {
+    const DrawWork samples = on_threads(trace, threads, Record::samples).work[0];
+    EXPECT_TRUE(samples.samples_only);
+    EXPECT_TRUE(samples.shaded_vertices.empty());
+    ASSERT_EQ(samples.triangles.size(), all.triangles.size());
+    for (std::size_t i = 0; i < all.triangles.size(); ++i)
+      ASSERT_EQ(samples.triangles[i].quads_passed, all.triangles[i].quads_passed) << i;
+    EXPECT_EQ(listed(samples.quads), listed(sampled));
+    std::vector<std::array<std::uint32_t, 2>> tiles;
+    for (const TileWritten& tile : samples.tiles_written) tiles.push_back({tile.triangle, tile.tile});
+    std::ranges::sort(tiles);  // those of one triangle are in another order
+    std::ranges::sort(first_written);
+    EXPECT_EQ(tiles, first_written);
   }
 }
 

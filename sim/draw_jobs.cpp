@@ -47,17 +47,22 @@ isa::Program load(const Trace& trace, std::uint32_t program) {
 }
 
 void check_work(const DrawJob& job) {
-  std::uint64_t quads = 0;
-  std::uint64_t vertices = 0;
-  for (const TriangleWork& triangle : job.work->triangles) {
-    quads += triangle.quad_count;
-    vertices += triangle.new_vertices;
+  const DrawWork& work = *job.work;
+  std::uint64_t quads = 0, passed = 0, vertices = 0;
+  for (std::size_t i = 0; i < work.triangles.size(); ++i) {
+    if (work.samples_only && !is_sampled(i)) continue;
+    quads += work.triangles[i].quad_count;
+    passed += work.triangles[i].quads_passed;
+    vertices += work.triangles[i].new_vertices;
   }
   std::uint64_t blocks = 0;
-  for (const QuadWork& quad : job.work->quads) blocks += quad.texel_block_count;
-  const bool fits = quads == job.work->quads.size() && vertices == job.work->shaded_vertices.size() &&
-                    blocks == job.work->texel_blocks.size() &&
-                    job.work->triangles.size() == job.draw->index_count / 3;
+  for (const QuadWork& quad : work.quads) {
+    blocks += quad.texel_block_count;
+    passed -= quad.passed != 0;
+  }
+  if (work.samples_only) vertices = 0;
+  const bool fits = quads == work.quads.size() && passed == 0 && vertices == work.shaded_vertices.size() &&
+                    blocks == work.texel_blocks.size() && work.triangles.size() == job.draw->index_count / 3;
   if (!fits)
     throw ModelError("the work record of command " + std::to_string(job.work->command) + " does not add up");
 }
@@ -66,8 +71,10 @@ void check_work(const DrawJob& job) {
 
 void count_items(DrawJob& job) {
   job.triangles_set_up = job.colored_quads = 0;
-  for (const TriangleWork& triangle : job.work->triangles) job.triangles_set_up += triangle.pieces != 0;
-  for (const QuadWork& quad : job.work->quads) job.colored_quads += is_colored(job, quad);
+  for (const TriangleWork& triangle : job.work->triangles) {
+    job.triangles_set_up += triangle.pieces != 0;
+    job.colored_quads += job.draw->state.color_write ? triangle.quads_passed : 0;
+  }
 }
 
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec) {

@@ -23,7 +23,7 @@ class PixelHistory {
   PixelHistory(const Trace& trace, const NumberFormats& formats, std::uint32_t x, std::uint32_t y)
       : trace_(trace), pixel_(std::size_t{y} * trace.width + x) {
     options_.formats = formats;
-    options_.record_work = false;
+    options_.record = Record::nothing;
     probe_ = options_;
     probe_.formats.frame = FrameFormat::float32;
     diffuse_program_ = add_program("ps_1_1\nmov r0, v0\n");

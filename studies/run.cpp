@@ -315,7 +315,9 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
-  options.record_work = fidelity != Fidelity::functional || timing.heat_maps;
+  if (fidelity == Fidelity::functional) options.record = Record::nothing;
+  if (fidelity == Fidelity::throughput) options.record = Record::samples;
+  if (timing.heat_maps) options.record = Record::everything;
   const auto run_it = [&] {
     if (fidelity == Fidelity::throughput && !timing.heat_maps)
       return run_throughput(trace, machine, options, progress, on_frame);

@@ -106,6 +106,9 @@ TEST_F(WorkCaches, TheKeyIsOfWhatTheWorkDependsOn) {
   options.formats.subpixel_bits = 8;
   EXPECT_NE(key, work_key(trace, options));
   options.formats = machine.numbers;
+  options.formats.reciprocal_bits = 12;
+  EXPECT_NE(key, work_key(trace, options));
+  options.formats = machine.numbers;
   trace.buffers[0].bytes[5] ^= std::byte{1};
   EXPECT_NE(key, work_key(trace, options));
 }

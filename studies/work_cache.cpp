@@ -90,8 +90,9 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
   const std::vector<std::byte> stored = traces::trace_bytes(trace);
   const std::string program = bytes_of("/proc/self/exe");
   const NumberFormats& f = options.formats;
-  for (const int value : {int(f.vertex_arithmetic), int(f.color), int(f.combiner), int(f.frame), int(f.depth),
-                          f.subpixel_bits, options.vertex_cache_entries})
+  for (const int value :
+       {int(f.vertex_arithmetic), int(f.color), int(f.combiner), int(f.frame), int(f.frame_rounding),
+        int(f.depth), f.subpixel_bits, f.filter_bits, f.reciprocal_bits, options.vertex_cache_entries})
     text.add(value);
   std::string key;
   for (std::uint64_t seed = 0; seed < 2; ++seed) {

@@ -44,18 +44,40 @@ TEST(WorkQueue, AfterAStopNothingWaits) {
   maker.join();  // or the test hangs
 }
 
-// The function beside the time: the same picture, work and cycles as one after the other.
-TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
-  const Machine machine = machine::load("radeon-8500");
+Trace plane_of_several_draws(const Machine& machine) {
   const traces::Scene scene = traces::parse_scene(
       "[surfels]\ngenerator = \"plane\"\ncolumns = 150\nrows = 150\n[frame]\nwidth = 128\nheight = 128\n"
       "[capture]\nviews = 1\nframe_size = 64\n",
       "plane");
-  const Trace trace = traces::record(scene, machine.numbers).trace;
+  return traces::record(scene, machine.numbers).trace;
+}
+
+Rendered with_all_work(const Trace& trace, const Machine& machine) {
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
-  const Rendered rendered = render(trace, options);
+  return render(trace, options);
+}
+
+// An estimate needs no more of the work than the samples that are recorded for it.
+TEST(RunFrame, ThroughputOfSamplesIsThatOfAllWork) {
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Trace trace = plane_of_several_draws(machine);
+  const Rendered rendered = with_all_work(trace, machine);
+  const sim::Result estimate = time_frame(trace, rendered.work, machine, Fidelity::throughput);
+  const FrameRun run = run_frame(trace, machine, Fidelity::throughput);
+  EXPECT_EQ(run.timing->cycles, estimate.cycles);
+  ASSERT_EQ(run.timing->units.size(), estimate.units.size());
+  for (std::size_t unit = 0; unit < estimate.units.size(); ++unit)
+    EXPECT_EQ(run.timing->units[unit].busy, estimate.units[unit].busy) << estimate.units[unit].name;
+  EXPECT_EQ(run.rendered.counters.fragments_passed, rendered.counters.fragments_passed);
+}
+
+// The function beside the time: the same picture, work and cycles as one after the other.
+TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
+  const Machine machine = machine::load("radeon-8500");
+  const Trace trace = plane_of_several_draws(machine);
+  const Rendered rendered = with_all_work(trace, machine);
   ASSERT_GT(rendered.work.size(), 2u);  // several draws, or nothing runs beside anything
   const sim::Result timing = sim::simulate(trace, rendered.work, machine);
   const FrameRun run = run_frame(trace, machine, Fidelity::cycle);

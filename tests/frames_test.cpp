@@ -31,7 +31,7 @@ traces::Scene reduced_scene(traces::Algorithm algorithm) {
 Rendered drawn(const traces::Scene& scene, const NumberFormats& formats) {
   RenderOptions options;
   options.formats = formats;
-  options.record_work = false;
+  options.record = Record::nothing;
   return render(traces::record(scene, formats).trace, options);
 }
 

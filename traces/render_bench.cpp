@@ -10,8 +10,8 @@ namespace splatscope::traces {
 namespace {
 
 // Table 1's frame of 65,536 EWA surfels, from its trace in memory to the frame: recording is not timed. With
-// the work record, which timing needs, or without; by the number of threads.
-void render_frame(benchmark::State& state, bool record_work) {
+// the whole work record, with the samples that an estimate needs, or with none; by the number of threads.
+void render_frame(benchmark::State& state, Record record_what) {
   const Machine machine = machine::load("geforce4-ti4400");
   static const Recording recording = record(load_scene("checkerboard-ewa-per-surfel"), machine.numbers, {});
   const auto threads = static_cast<std::size_t>(state.range(0));
@@ -19,11 +19,20 @@ void render_frame(benchmark::State& state, bool record_work) {
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
-  options.record_work = record_work;
+  options.record = record_what;
   for (auto _ : state) benchmark::DoNotOptimize(render(recording.trace, options));
 }
-BENCHMARK_CAPTURE(render_frame, frame, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(render_frame, frame_and_work, true)
+BENCHMARK_CAPTURE(render_frame, frame, Record::nothing)
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(render_frame, frame_and_samples, Record::samples)
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(render_frame, frame_and_work, Record::everything)
     ->Arg(1)
     ->Arg(2)
     ->Unit(benchmark::kMillisecond)

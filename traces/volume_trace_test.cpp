@@ -55,7 +55,7 @@ double psnr(const Frame& frame, const kernels::VolumePicture& reference) {
 Frame drawn(const Trace& trace, const NumberFormats& formats) {
   RenderOptions options;
   options.formats = formats;
-  options.record_work = false;
+  options.record = Record::nothing;
   return render(trace, options).frame;
 }
 

@@ -88,7 +88,7 @@ class CapturedViews {
     const Sphere sphere = bounding_sphere(surfels, splatting);
     RenderOptions options;
     options.formats = formats;
-    options.record_work = false;
+    options.record = Record::nothing;
     for (int i = 0; i < capture.views; ++i) {
       views_.push_back(looking_from(sphere, direction(i, capture.views), capture.frame_size));
     }

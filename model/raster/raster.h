@@ -101,6 +101,7 @@ struct BandCounts {
   std::size_t windows = 0;
   std::uint32_t covered = 0, passed = 0;  // pixels
   std::uint32_t quads = 0;                // with covered pixels
+  std::uint32_t quads_passed = 0;         // with pixels that passed
 };
 
 // The windows of a triangle with covered pixels in one band of 8 rows, written to `out`; tests (and writes)

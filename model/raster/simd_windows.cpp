@@ -234,6 +234,12 @@ std::uint64_t test_depth_at_edge(const TriangleSetup& setup, const DepthTarget& 
   return passed;
 }
 
+// Quads of a window with any of `pixels`.
+HWY_INLINE std::uint32_t quads_of(std::uint64_t pixels) {
+  const std::uint64_t pairs = pixels | pixels >> 1;
+  return static_cast<std::uint32_t>(hwy::PopCount((pairs | pairs >> 2) & 0x1111111111111111u));
+}
+
 BandCounts rasterize_band(const TriangleSetup& setup, const DepthTarget& depth, int y,
                           std::span<Window, kMaxWindows> out) {
   const int width = static_cast<int>(depth.viewport.width), height = static_cast<int>(depth.viewport.height);
@@ -256,9 +262,8 @@ BandCounts rasterize_band(const TriangleSetup& setup, const DepthTarget& depth, 
     out[counts.windows++] = window;
     counts.covered += static_cast<std::uint32_t>(hwy::PopCount(window.covered));
     counts.passed += static_cast<std::uint32_t>(hwy::PopCount(window.passed));
-    const std::uint64_t rows_of_quads = window.covered | window.covered >> 1;
-    counts.quads +=
-        static_cast<std::uint32_t>(hwy::PopCount((rows_of_quads | rows_of_quads >> 2) & 0x1111111111111111u));
+    counts.quads += quads_of(window.covered);
+    counts.quads_passed += quads_of(window.passed);
   }
   return counts;
 }

@@ -17,10 +17,11 @@ enum class TriangleOutcome : std::uint8_t {
 };
 
 struct TriangleWork {
-  std::uint32_t quad_count = 0;   // 2x2 quads with coverage, in raster order
-  std::uint32_t tile_count = 0;   // 8x8-pixel tiles the rasteriser visited
-  std::uint8_t new_vertices = 0;  // 0..3 not found in the post-transform FIFO: they are shaded first
-  std::uint8_t pieces = 1;        // triangles after clipping and culling; 0 when rejected
+  std::uint32_t quad_count = 0;    // 2x2 quads with coverage, in raster order
+  std::uint32_t quads_passed = 0;  // of these, with a pixel that passed the depth test
+  std::uint32_t tile_count = 0;    // 8x8-pixel tiles the rasteriser visited
+  std::uint8_t new_vertices = 0;   // 0..3 not found in the post-transform FIFO: they are shaded first
+  std::uint8_t pieces = 1;         // triangles after clipping and culling; 0 when rejected
   TriangleOutcome outcome = TriangleOutcome::drawn;
 };
 
@@ -35,12 +36,32 @@ struct QuadWork {
 // 4x4 texels (16 bytes of an A8 texture), numbered by rows of blocks.
 inline constexpr std::uint32_t kTexelBlockEdge = 4;
 
+// 4x4 pixels of the frame, numbered by rows: what a cache line of it holds.
+inline constexpr std::uint32_t kFrameTileEdge = 4;
+
+// The first depth written in a tile by the triangles that are not sampled.
+struct TileWritten {
+  std::uint32_t triangle = 0;
+  std::uint32_t tile = 0;
+};
+
+// Estimates look at the quads of some triangles only: of one run in every 16, from the first.
+inline constexpr std::size_t kSampledRun = 256;
+inline constexpr std::size_t kSampledRunsApart = 16;
+constexpr bool is_sampled(std::size_t triangle) {
+  return triangle / kSampledRun % kSampledRunsApart == 0;
+}
+
 struct DrawWork {
   std::uint32_t command = 0;                   // its place in Trace::commands
   std::vector<std::uint32_t> shaded_vertices;  // vertex numbers (base_vertex added) in the order of shading
   std::vector<TriangleWork> triangles;         // as indexed
   std::vector<QuadWork> quads;                 // of all triangles in order
   std::vector<std::uint32_t> texel_blocks;     // of all quads in order
+  // Whether only samples of it were recorded: no shaded vertices, quads and texel blocks of the sampled
+  // triangles, and what the others left in the depth buffer, in order.
+  bool samples_only = false;
+  std::vector<TileWritten> tiles_written;
 };
 
 }  // namespace splatscope

@@ -40,6 +40,7 @@ RandomTrace splats(std::uint32_t triangles, unsigned seed) {
       quad.covered = 15;
       quad.passed = number(0, 3) == 0 ? 0 : 15;
       quad.texel_block_count = quad.passed ? 1 : 0;
+      triangle.quads_passed += quad.passed != 0;
       if (quad.passed) work.texel_blocks.push_back(number(0, 255));
       work.quads.push_back(quad);
     }

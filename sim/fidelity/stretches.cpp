@@ -33,21 +33,19 @@ double Stretches::agp_clocks(double bytes) const {
 
 std::vector<Clocks> Stretches::of(const DrawJob& job) {
   const Traffic traffic = traffic_.of(job);
+  const std::span<const TriangleWork> all = job.work->triangles;
   std::vector<Clocks> stretches;
-  Position at;
-  while (at.triangle < job.work->triangles.size()) stretches.push_back(next(job, traffic, at));
+  for (std::size_t first = 0; first < all.size(); first += kStretch)
+    stretches.push_back(next(job, traffic, all.subspan(first, std::min(kStretch, all.size() - first))));
   return stretches;
 }
 
-Clocks Stretches::next(const DrawJob& job, const Traffic& traffic, Position& at) const {
-  const DrawWork& work = *job.work;
-  const std::size_t end = std::min(at.triangle + kStretch, work.triangles.size());
-  const auto triangles = static_cast<double>(end - at.triangle);
+Clocks Stretches::next(const DrawJob& job, const Traffic& traffic,
+                       std::span<const TriangleWork> triangles) const {
   const int width = machine_.pixel.quads_per_clock;
-  double vertices = 0, pieces = 0, quads = 0, colored = 0, blocks = 0;
+  double vertices = 0, pieces = 0, quads = 0, colored = 0;
   Clocks clocks{};
-  for (; at.triangle < end; ++at.triangle) {
-    const TriangleWork& triangle = work.triangles[at.triangle];
+  for (const TriangleWork& triangle : triangles) {
     vertices += triangle.new_vertices;
     clocks[kPrimitive] += machine_.primitive.clocks_per_triangle;
     if (triangle.pieces == 0) continue;
@@ -56,14 +54,11 @@ Clocks Stretches::next(const DrawJob& job, const Traffic& traffic, Position& at)
     clocks[kRaster] += std::max({1.0, whole_clocks(triangle.tile_count, machine_.raster.tiles_per_clock),
                                  whole_clocks(triangle.quad_count, width)});
     quads += triangle.quad_count;
-    for (const std::size_t last = at.quad + triangle.quad_count; at.quad < last; ++at.quad) {
-      const QuadWork& quad = work.quads[at.quad];
-      colored += is_colored(job, quad);
-      blocks += quad.texel_block_count;
-    }
+    colored += triangle.quads_passed;
   }
+  if (!job.draw->state.color_write) colored = 0;
   const bool a_quad = reads_a_vertex_a_quad(what_if_);
-  const double indices = a_quad ? 0 : 3 * triangles;
+  const double indices = a_quad ? 0 : 3 * static_cast<double>(triangles.size());
   const double read = a_quad ? vertices / 4 : vertices;
   const double fetched = read * bytes_of_vertex(*job.draw, what_if_);
   clocks[kFetch] = std::max(indices / machine_.fetch.indices_per_clock, read);
@@ -76,7 +71,8 @@ Clocks Stretches::next(const DrawJob& job, const Traffic& traffic, Position& at)
   clocks[kPrimitive] = std::max(clocks[kPrimitive], vertices);
   clocks[kSetup] = pieces * machine_.setup.clocks_per_triangle;
   clocks[kDepth] = quads / width;
-  clocks[kTexture] = std::max(blocks / machine_.texture.lookups_per_clock, colored / width);
+  clocks[kTexture] =
+      std::max(colored * traffic.texel_blocks / machine_.texture.lookups_per_clock, colored / width);
   clocks[kPixel] = colored * static_cast<double>(job.pixel_clocks) / width;
   clocks[kBlend] = colored / width;
   double bytes = quads * traffic.depth + colored * (traffic.color + traffic.texture);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "model/command/commands.h"
@@ -50,11 +51,7 @@ class Stretches {
   void clear() { traffic_.clear(); }
 
  private:
-  struct Position {
-    std::size_t triangle = 0;
-    std::size_t quad = 0;
-  };
-  Clocks next(const DrawJob& job, const Traffic& traffic, Position& at) const;
+  Clocks next(const DrawJob& job, const Traffic& traffic, std::span<const TriangleWork> triangles) const;
   double agp_clocks(double bytes) const;
 
   const Trace& trace_;

@@ -1,14 +1,13 @@
 #include "sim/fidelity/traffic.h"
 
 #include <algorithm>
+#include <bit>
+#include <span>
 
 #include "sim/units/cache/cache_tags.h"
 
 namespace splatscope::sim {
 namespace {
-
-constexpr std::size_t kRun = 1024;  // quads looked up in a row
-constexpr std::size_t kRunsApart = 8;
 
 // Bytes that a touch of a line moves: nothing where it is held, else its own, and those of a dirty line that
 // makes room.
@@ -25,6 +24,51 @@ double touch(CacheTags& tags, std::uint32_t line, double fetched, double written
 
 }  // namespace
 
+// The caches of a draw, and what they have moved.
+class TrafficCounter::Caches {
+ public:
+  Caches(const TrafficCounter& counter, const DrawJob& job)
+      : job_(job),
+        lines_(counter.layout_.depth),
+        uses_depth_(uses_depth(*job.draw)),
+        depth_bytes_(lines_.line_bytes()),
+        color_bytes_(counter.layout_.color.line_bytes()),
+        fill_bytes_(job.draw->source ? counter.machine_.texture.line_bytes
+                                     : counter.machine_.texture.fill_bytes),
+        line_shift_(std::countr_zero(static_cast<unsigned>(counter.machine_.texture.line_bytes / 16))),
+        depth_(counter.machine_.depth.cache_lines, counter.machine_.depth.cache_ways),
+        color_(counter.machine_.blend.cache_lines, counter.machine_.blend.cache_ways),
+        texture_(counter.machine_.texture.cache_lines, counter.machine_.texture.cache_ways) {}
+
+  void look_up(const QuadWork& quad, std::span<const std::uint32_t> blocks, bool cleared, bool writes_depth) {
+    const std::uint32_t line = lines_.line_of(quad);
+    ++quads_;
+    if (uses_depth_)
+      sum_.depth += touch(depth_, line, cleared ? 0 : depth_bytes_, depth_bytes_, writes_depth);
+    if (!is_colored(job_, quad)) return;
+    ++colored_;
+    sum_.color += touch(color_, line, job_.draw->state.blend ? color_bytes_ : 0, color_bytes_, true);
+    sum_.texel_blocks += static_cast<double>(blocks.size());
+    for (const std::uint32_t block : blocks)
+      sum_.texture += touch(texture_, block >> line_shift_, fill_bytes_, 0, false);
+  }
+
+  Traffic of_a_quad() const {
+    const double quads = std::max(1.0, quads_), colored = std::max(1.0, colored_);
+    return {sum_.depth / quads, sum_.color / colored, sum_.texture / colored, sum_.texel_blocks / colored};
+  }
+
+ private:
+  const DrawJob& job_;
+  const FrameLines& lines_;
+  bool uses_depth_;
+  double depth_bytes_, color_bytes_, fill_bytes_;
+  int line_shift_;  // of texel blocks
+  CacheTags depth_, color_, texture_;
+  Traffic sum_;
+  double quads_ = 0, colored_ = 0;
+};
+
 TrafficCounter::TrafficCounter(const Machine& machine, const MemoryLayout& layout)
     : machine_(machine), layout_(layout), cleared_(layout.depth.lines(), 0) {}
 
@@ -33,43 +77,26 @@ void TrafficCounter::clear() {
 }
 
 Traffic TrafficCounter::of(const DrawJob& job) {
-  const DrawState& state = job.draw->state;
-  const double depth_bytes = layout_.depth.line_bytes(), color_bytes = layout_.color.line_bytes();
-  const auto blocks_a_line = static_cast<std::uint32_t>(machine_.texture.line_bytes / 16);
-  CacheTags depth(machine_.depth.cache_lines, machine_.depth.cache_ways);
-  CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);
-  CacheTags texture(machine_.texture.cache_lines, machine_.texture.cache_ways);
-  const double fill_bytes = job.draw->source ? machine_.texture.line_bytes : machine_.texture.fill_bytes;
-  Traffic sum;
-  double quads = 0, colored = 0;
-  const std::uint32_t* blocks = job.work->texel_blocks.data();
-  for (std::size_t q = 0; q < job.work->quads.size(); ++q) {
-    const QuadWork& quad = job.work->quads[q];
-    const std::uint32_t* const blocks_end = blocks + quad.texel_block_count;
-    const bool writes_depth = state.depth_write && quad.passed != 0;
-    const std::uint32_t line = layout_.depth.line_of(quad);
-    const bool read_depth = cleared_[line] == 0;
-    if (writes_depth) cleared_[line] = 0;
-    if (q / kRun % kRunsApart == 0) {
-      ++quads;
-      if (uses_depth(*job.draw))
-        sum.depth += touch(depth, line, read_depth ? depth_bytes : 0, depth_bytes, writes_depth);
-      if (is_colored(job, quad)) {
-        ++colored;
-        sum.color += touch(color, line, state.blend ? color_bytes : 0, color_bytes, true);
-        for (const std::uint32_t* block = blocks; block != blocks_end; ++block) {
-          sum.texture += touch(texture, *block / blocks_a_line, fill_bytes, 0, false);
-        }
-      }
+  const DrawWork& work = *job.work;
+  const bool depth_write = job.draw->state.depth_write;
+  Caches caches(*this, job);
+  auto written = work.tiles_written.begin();
+  auto quad = work.quads.begin();
+  const std::uint32_t* block = work.texel_blocks.data();
+  for (std::size_t triangle = 0; triangle < work.triangles.size(); ++triangle) {
+    const bool sampled = is_sampled(triangle);
+    for (; written != work.tiles_written.end() && written->triangle <= triangle; ++written)
+      cleared_[written->tile] = 0;
+    if (work.samples_only && !sampled) continue;
+    for (const auto end = quad + work.triangles[triangle].quad_count; quad != end; ++quad) {
+      const bool writes_depth = depth_write && quad->passed != 0;
+      std::uint8_t& cleared = cleared_[layout_.depth.line_of(*quad)];
+      if (sampled) caches.look_up(*quad, {block, quad->texel_block_count}, cleared != 0, writes_depth);
+      if (writes_depth) cleared = 0;
+      block += quad->texel_block_count;
     }
-    blocks = blocks_end;
   }
-  if (quads > 0) sum.depth /= quads;
-  if (colored > 0) {
-    sum.color /= colored;
-    sum.texture /= colored;
-  }
-  return sum;
+  return caches.of_a_quad();
 }
 
 }  // namespace splatscope::sim

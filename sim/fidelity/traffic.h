@@ -8,15 +8,16 @@
 
 namespace splatscope::sim {
 
-// Bytes to and from video memory for a quad of a draw, on average.
+// Of a quad of a draw, on average: bytes to and from video memory, and texel blocks.
 struct Traffic {
-  double depth = 0;    // of every quad
-  double color = 0;    // of a quad that goes on to texture, pixel unit and blending
-  double texture = 0;  // the same
+  double depth = 0;         // of every quad
+  double color = 0;         // of a quad that goes on to texture, pixel unit and blending
+  double texture = 0;       // the same
+  double texel_blocks = 0;  // that such a quad reads
 };
 
-// Counts what the frame and texture caches of a machine would move, on their tags alone. One run of quads of
-// every eight is looked up, beginning with empty caches at the start of a draw.
+// Counts what the frame and texture caches of a machine would move, on their tags alone: for the quads of
+// sampled triangles (is_sampled), beginning with empty caches at the start of a draw.
 class TrafficCounter {
  public:
   TrafficCounter(const Machine& machine, const MemoryLayout& layout);
@@ -26,6 +27,8 @@ class TrafficCounter {
   void clear();
 
  private:
+  class Caches;
+
   const Machine& machine_;
   const MemoryLayout& layout_;
   std::vector<std::uint8_t> cleared_;  // depth lines that hold the clear value and are not read

@@ -155,6 +155,7 @@ class RandomMaker {
       for (int block = 0; block < quad.texel_block_count; ++block)
         work.texel_blocks.push_back(number(0, 255));
       work.quads.push_back(quad);
+      triangle.quads_passed += quad.passed != 0;
     }
     work.triangles.push_back(triangle);
   }
@@ -178,7 +179,7 @@ inline RandomTrace simple_trace(int triangles) {
   work.command = 1;
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(triangles); ++i) {
     for (std::uint32_t k = 0; k < 3; ++k) work.shaded_vertices.push_back(3 * i + k);
-    work.triangles.push_back({4, 1, 3, 1, TriangleOutcome::drawn});
+    work.triangles.push_back({4, 4, 1, 3, 1, TriangleOutcome::drawn});
     for (std::uint16_t k = 0; k < 4; ++k) {
       work.quads.push_back(
           {static_cast<std::uint16_t>((i + k) % 32), static_cast<std::uint16_t>(i % 32), 15, 15, 1});

@@ -55,7 +55,7 @@ Frame float_frame(const VolumeModel& model) {
   options.formats.frame = FrameFormat::float32;
   options.formats.color = ColorFormat::float32;
   options.formats.subpixel_bits = 8;
-  options.record_work = false;
+  options.record = Record::nothing;
   const traces::VolumeTraceSettings settings{
       .texture_length = 2048, .texture_bits = 16, .float_colors = true};
   return render(traces::volume_trace(model.view, model.splats, settings).trace, options).frame;
@@ -239,7 +239,7 @@ std::vector<StepRow> step_rows(const VolumeModel& model, const Progress& progres
   const Reference reference(model);
   const Machine machine = machine::load(kMachines[1]);
   RenderOptions options;
-  options.record_work = false;
+  options.record = Record::nothing;
   const std::array<Trace, 2> traces{traces::volume_trace(model.view, model.splats, {.gains = false}).trace,
                                     traces::volume_trace(model.view, model.splats, {}).trace};
   std::vector<StepRow> rows;

@@ -54,7 +54,7 @@ void compare(int rounds) {
   RenderOptions options;
   options.formats = machine.numbers;
   options.vertex_cache_entries = machine.vertex.cache_entries;
-  options.record_work = false;
+  options.record = Record::nothing;
   const GlRenderer mesa(trace);
   Rendered rendered = render(trace, options);  // both once before it counts
   mesa.draw();

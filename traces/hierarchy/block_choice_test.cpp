@@ -119,7 +119,7 @@ TEST(BlockChoice, ProgressiveFramesRefineToTheSamePicture) {
   EXPECT_EQ(choice.frames.back().counts.surfels, choice.frames.back().counts.surfels_by_level.front());
 
   RenderOptions options;
-  options.record_work = false;
+  options.record = Record::nothing;
   std::vector<splatscope::Frame> frames;
   const Recording recording = record(scene, options.formats);
   render(recording.trace, options, {}, [&](const splatscope::Frame& frame) { frames.push_back(frame); });

@@ -58,7 +58,7 @@ Drawn drawn(Scene scene, const CapturedWeights& weights, Culling culling) {
   const bool per_pixel = scene.splatting.algorithm == Algorithm::ewa_per_pixel;
   const Recording recording = per_pixel ? record(scene, NumberFormats{}) : record(scene, weights);
   RenderOptions options;
-  options.record_work = false;
+  options.record = Record::nothing;
   return {render(recording.trace, options).frame, recording.counts.blocks};
 }
 
