@@ -156,7 +156,9 @@ PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const Me
   return prepared;
 }
 
-void give_work(DrawJob& job, const DrawWork& work) {
+void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice) {
+  if (work.samples_only && !samples_suffice)
+    throw ModelError("the work record of command " + std::to_string(work.command) + " holds samples only");
   if (work.command != job.command)
     throw ModelError("command " + std::to_string(job.command) + " of the trace has no work record");
   job.work = &work;

@@ -56,8 +56,8 @@ struct PreparedDraws {
   std::vector<DrawJob> jobs;
 };
 PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout);
-// Gives a draw its work. ModelError where they do not fit together.
-void give_work(DrawJob& job, const DrawWork& work);
+// Gives a draw its work. ModelError where they do not fit together. `samples_suffice`: for an estimate.
+void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice = false);
 // Both, for all draws.
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                             const MemoryLayout& layout);

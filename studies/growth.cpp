@@ -25,16 +25,24 @@ double least_seconds(const Trace& trace, const Machine& machine, Fidelity fideli
   return least;
 }
 
-// One view of few pixels captures the weights: these change no time. All vertices lie in video memory,
-// however large: else large frames would be those of another machine, which reads over AGP and takes more
-// cycles a surfel.
+constexpr double kPaperSide = 256;  // surfels; of the plane that the default camera looks at
+
+// The paper's plane in more or fewer surfels, with the camera as much further away: the same picture in more
+// or fewer pixels, so that each surfel is as much work. One view of few pixels captures the weights: these
+// change no time. All vertices lie in video memory, however large: else large frames would be those of another
+// machine, which reads over AGP and takes more cycles a surfel.
 GrowthRow row_of(int side, const Machine& machine) {
-  const traces::Scene scene = traces::parse_scene(
+  const double scale = side / kPaperSide;
+  traces::Scene scene = traces::parse_scene(
       fmt::format("[surfels]\ngenerator = \"plane\"\ncolumns = {0}\nrows = {0}\n[frame]\nwidth = {1}\n"
                   "height = {1}\n[splatting]\nvertex_memory = \"video\"\nvideo_megabytes = 4096\n"
                   "[capture]\nviews = 1\nframe_size = 64\n",
                   side, 2 * side),
       "plane");
+  scene.camera.eye *= scale;
+  scene.camera.target *= scale;
+  scene.camera.near *= scale;
+  scene.camera.far *= scale;
   const int surfels = side * side;
   const bool is_measured = restart_peak_memory();
   const std::size_t before = peak_memory();

@@ -24,7 +24,7 @@ class ThroughputEstimate::State {
     if (next_draw_ == draws_.jobs.size()) throw ModelError("there are more work records than draws");
     while (!std::holds_alternative<Draw>(trace_.commands[ends_.size()])) add_command();
     DrawJob& job = draws_.jobs[next_draw_++];
-    give_work(job, work);
+    give_work(job, work, true);
     begin_command();
     add_draw(job);
     end_command();
