@@ -27,11 +27,14 @@ struct Edge {
 
 // A triangle ready to be rasterised. Coverage is decided on the machine's subpixel grid; depth and attributes
 // are planes through the unsnapped corners: how the hardware rounds them is not known, and this rounds least.
+// A sliver can cover a pixel centre of the grid that lies beside its corners, where the plane of the depth
+// says anything: depth stays within that of the corners.
 struct TriangleSetup {
   std::array<Edge, 3> edges;
   // Pixels that can be covered: left <= x < right, top <= y < bottom. (left, top) is the origin pixel.
   int left = 0, top = 0, right = 0, bottom = 0;
-  Plane depth;                    // window z
+  Plane depth;                      // window z
+  float nearest = 0, furthest = 0;  // of the corners' window z
   Plane weight1, weight2, scale;  // perspective barycentrics of corners 1 and 2: weightN(x, y) / scale(x, y)
   int winding = 0;      // of the corners on the grid: 1 clockwise in the window, -1 the other way, 0 no area
   bool covers = false;  // false: no pixel centre is inside

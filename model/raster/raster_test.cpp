@@ -48,15 +48,18 @@ std::vector<Window> windows_of(const TriangleSetup& setup, const DepthTarget& de
   if (!setup.covers) return all;
   for (int y = setup.top & ~1; y < setup.bottom; y += kWindow) {
     const BandCounts counts = rasterize_band(setup, depth, y, *band);
-    BandCounts expected{counts.windows, 0, 0, 0};
+    BandCounts expected{counts.windows, 0, 0, 0, 0};
     for (const Window& window : std::span(*band).first(counts.windows)) {
       expected.covered += static_cast<unsigned>(std::popcount(window.covered));
       expected.passed += static_cast<unsigned>(std::popcount(window.passed));
-      for (unsigned quad = 0; quad < 16; ++quad) expected.quads += (window.covered >> 4 * quad & 15u) != 0;
+      for (unsigned quad = 0; quad < 16; ++quad) {
+        expected.quads += (window.covered >> 4 * quad & 15u) != 0;
+        expected.quads_passed += (window.passed >> 4 * quad & 15u) != 0;
+      }
       all.push_back(window);
     }
-    EXPECT_EQ(std::tuple(expected.covered, expected.passed, expected.quads),
-              std::tuple(counts.covered, counts.passed, counts.quads));
+    EXPECT_EQ(std::tuple(expected.covered, expected.passed, expected.quads, expected.quads_passed),
+              std::tuple(counts.covered, counts.passed, counts.quads, counts.quads_passed));
   }
   return all;
 }
@@ -212,6 +215,7 @@ TEST(Raster, EverySimdTargetGivesTheSameBits) {
     WindowTriangle t =
         triangle(x + reach * size(random) / 12, y + reach * size(random) / 12, x + size(random),
                  y + size(random), x + reach * size(random) / 12, y + size(random));
+    if (i % 10 == 5) t[1].y = t[0].y, t[2].y = t[0].y + (i % 20 == 5 ? 1e-6 : 1e-30);  // slivers
     for (WindowVertex& vertex : t) vertex.z = z(random), vertex.inverse_w = w(random);
     triangles.push_back(t);
   }
@@ -273,6 +277,18 @@ TEST(Raster, DepthTestKeepsTheNearest) {
   EXPECT_EQ(output::quantize_depth(0.25f, DepthFormat::z24), stored);
   EXPECT_TRUE(passed(0.75, false, true));
   EXPECT_EQ(output::quantize_depth(0.75f, DepthFormat::z24), stored);
+}
+
+// The grid makes a sliver 1/16 pixel high, so that it covers the centres of pixels 1/32 pixel beside it: more
+// than a thousand times its height.
+TEST(Raster, DepthOfASliverStaysWithinThatOfItsCorners) {
+  std::vector<std::uint32_t> depth(std::size_t{kViewport.width} * kViewport.height,
+                                   output::quantize_depth(1, DepthFormat::z24));
+  const double rounds_here = 2.5 + 0.5 / 16;  // from the row of centres to the next step of the grid
+  WindowTriangle t = triangle(1, rounds_here - 1e-5, 9, rounds_here - 1e-5, 5, rounds_here + 1e-5);
+  t[0].z = t[1].z = 0.5, t[2].z = 0.51;
+  windows_of(set_up(t, 4, driver_rounding(4)), {depth, kViewport, DepthFormat::z24, true, true});
+  EXPECT_EQ(output::quantize_depth(0.5f, DepthFormat::z24), depth[2 * kViewport.width + 5]);
 }
 
 TEST(Raster, CountsTiles) {

@@ -33,6 +33,7 @@ struct alignas(64) Lanes {
   std::int32_t left[kMaxLanes], top[kMaxLanes], right[kMaxLanes], bottom[kMaxLanes];
   std::int32_t winding[kMaxLanes];
   float planes[4][3][kMaxLanes];
+  float nearest[kMaxLanes], furthest[kMaxLanes];
 };
 
 HWY_INLINE void store_integers(V value, std::int32_t* to) {
@@ -128,6 +129,8 @@ HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, L
   };
   const Linear l1 = linear(hn::Mul(y2, inverse_area), hn::Mul(hn::Neg(x2), inverse_area));
   const Linear l2 = linear(hn::Mul(hn::Neg(y1), inverse_area), hn::Mul(x1, inverse_area));
+  hn::Store(hn::DemoteTo(F{}, hn::Min(hn::Min(z[0], z[1]), z[2])), F{}, out.nearest);
+  hn::Store(hn::DemoteTo(F{}, hn::Max(hn::Max(z[0], z[1]), z[2])), F{}, out.furthest);
   store_plane(z[0], hn::Sub(z[1], z[0]), hn::Sub(z[2], z[0]), l1, l2, out.planes[0]);
   // 1/w relative to its largest keeps the planes in range for any w.
   const V largest = hn::Max(hn::Max(inverse_w[0], inverse_w[1]), inverse_w[2]), zero = hn::Zero(D{});
@@ -150,6 +153,8 @@ HWY_INLINE void read(const Lanes& in, std::size_t lane, TriangleSetup& out) {
     out.edges[e] = {static_cast<std::int64_t>(in.edge_origin[e][lane]), in.edge_dx[e][lane],
                     in.edge_dy[e][lane]};
   }
+  out.nearest = in.nearest[lane];
+  out.furthest = in.furthest[lane];
   Plane* planes[] = {&out.depth, &out.weight1, &out.weight2, &out.scale};
   for (std::size_t k = 0; k < 4; ++k)
     *planes[k] = {in.planes[k][0][lane], in.planes[k][1][lane], in.planes[k][2][lane]};

@@ -47,7 +47,9 @@ std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarget& target, 
     const int x = Window::x_of(bit), y = Window::y_of(bit);
     const float z = setup.depth.at(static_cast<float>(window.x + x - setup.left),
                                    static_cast<float>(window.y + y - setup.top));
-    const std::uint32_t depth = output::quantize_depth(z, target.format);
+    const float behind = z > setup.nearest ? z : setup.nearest;  // also for NaN
+    const float within = behind < setup.furthest ? behind : setup.furthest;
+    const std::uint32_t depth = output::quantize_depth(within, target.format);
     std::uint32_t& old = stored[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
     if (target.test && depth > old) continue;
     if (target.write) old = depth;
@@ -146,6 +148,7 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
   }
   const VF origin = hn::Set(F{}, setup.depth.origin), dx = hn::Set(F{}, setup.depth.dx),
            dy = hn::Set(F{}, setup.depth.dy);
+  const VF nearest = hn::Set(F{}, setup.nearest), furthest = hn::Set(F{}, setup.furthest);
   const VI from_left = hn::Set(I{}, window.x - setup.left);
   std::uint64_t passed = 0;
   for (std::size_t block = 0; block < kBlocks; ++block) {
@@ -156,7 +159,9 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
     const VF x = hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, Window::kLaneX + lane), from_left));
     const VF y = hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, Window::kLaneY + lane), hn::Set(I{}, from_top)));
     const VF z = hn::Add(origin, hn::Add(hn::Mul(dx, x), hn::Mul(dy, y)));
-    const auto depth = quantize(z, target.format);
+    const VF behind = hn::IfThenElse(hn::Gt(z, nearest), z, nearest);  // also for NaN
+    const VF within = hn::IfThenElse(hn::Lt(behind, furthest), behind, furthest);
+    const auto depth = quantize(within, target.format);
     const auto quads = hn::TableLookupLanes(old[block], to_quads);
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(covered),
                                   static_cast<std::uint8_t>(covered >> 8)};
