@@ -29,8 +29,8 @@ constexpr double kPaperSide = 256;  // surfels; of the plane that the default ca
 
 // The paper's plane in more or fewer surfels, with the camera as much further away: the same picture in more
 // or fewer pixels, so that each surfel is as much work. One view of few pixels captures the weights: these
-// change no time. All vertices lie in video memory, however large: else large frames would be those of another
-// machine, which reads over AGP and takes more cycles a surfel.
+// change no time. All vertices lie in video memory, however large: else large frames would be those of
+// another machine, which reads over AGP and takes more cycles a surfel.
 GrowthRow row_of(int side, const Machine& machine) {
   const double scale = side / kPaperSide;
   traces::Scene scene = traces::parse_scene(

@@ -22,7 +22,7 @@ struct Setting {
   std::string_view name;
   std::string_view toml;
 };
-constexpr Setting kSettings[] = {{"defaults", ""}, {"c = 2, sigma = 0.71", "cutoff = 2\nsigma = 0.7071\n"}};
+constexpr Setting kSettings[] = {{"defaults", ""}, {"c = 3, sigma = 0.58", "cutoff = 3\nsigma = 0.5774\n"}};
 
 // Sums of splats in double precision, as a machine with an exact frame buffer would leave them.
 Frame frame_of(const kernels::SplatSums& sums) {
