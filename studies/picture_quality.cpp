@@ -37,13 +37,21 @@ Frame frame_of(const kernels::SplatSums& sums) {
 }
 
 // The reference's renderer with weights per surfel; of a surfel with four weights their mean.
-Frame draw_exactly(const traces::Scene& scene, std::span<const traces::VertexWeights> weights) {
+kernels::ScreenSpacePicture draw_exactly(const traces::Scene& scene,
+                                         std::span<const traces::VertexWeights> weights) {
   std::vector<kernels::Surfel> surfels = reference_surfels(scene);
   for (std::size_t k = 0; k < surfels.size(); ++k) {
     const traces::VertexWeights& w = weights[k];
     surfels[k].weight = 0.25 * (double{w[0]} + w[1] + w[2] + w[3]);
   }
-  return frame_of(screen_space_reference(scene, surfels));
+  return screen_space_reference(scene, surfels);
+}
+
+// Eq. 5 as it stands: the picture that the sums are, not divided.
+kernels::ScreenSpacePicture undivided(kernels::ScreenSpacePicture picture) {
+  for (std::size_t i = 0; i < picture.sums.size(); ++i)
+    picture.normalized[i] = glm::min(glm::dvec3(picture.sums[i]), 1.0);
+  return picture;
 }
 
 Frame draw(const traces::Scene& scene, const traces::CapturedWeights& weights, const Machine& machine) {
@@ -68,28 +76,31 @@ nlohmann::ordered_json json_of(std::string_view setting, const QualityRow& row) 
           {"captured_weights_double", json_of(row.captured)},
           {"captured_weights_float_frame", json_of(row.float_frame)},
           {"per_surfel", json_of(row.per_surfel)},
+          {"per_surfel_against_same_weights_double", json_of(row.same_weights)},
           {"capture_seconds", row.capture_seconds},
           {"unseen", row.unseen}};
 }
 
 std::string head(std::string_view setting) {
   return fmt::format(
-      "{}\n{:<14} {:>7} | {:^19} | {:^19} | {:^34} | {:>7}\n{:<14} {:>7} | {:>5} {:>6} {:>6} | {:>5} {:>6} "
-      "{:>6} "
+      "{}\n{:<14} {:>7} | {:^19} | {:^26} | {:^34} | {:>7}\n{:<14} {:>7} | {:>5} {:>6} {:>6} | {:>5} {:>6} "
+      "{:>6} {:>6} "
       "| {:>8} {:>8} {:>8} {:>7} | {:>7}\n",
       setting, "", "", "per pixel", "per surfel", "per surfel off edges, step by step", "capture", "model",
-      "surfels", "all", "off e.", "holes", "all", "off e.", "holes", "exact", "captured", "float", "8 bits",
-      "");
+      "surfels", "all", "off e.", "holes", "all", "off e.", "holes", "Eq. 5", "exact", "captured", "float",
+      "8 bits", "");
 }
 
 std::string line(const QualityRow& r) {
   return fmt::format(
-      "{:<14} {:>7} | {:>5.1f} {:>6.1f} {:>6} | {:>5.1f} {:>6.1f} {:>6} | {:>8.1f} {:>8.1f} {:>8.1f} "
+      "{:<14} {:>7} | {:>5.1f} {:>6.1f} {:>6} | {:>5.1f} {:>6.1f} {:>6} {:>6.1f} | {:>8.1f} {:>8.1f} "
+      "{:>8.1f} "
       "{:>7.1f} | "
       "{:>5.1f} s\n",
       r.name, r.surfels, r.per_pixel.psnr, r.per_pixel.psnr_off_edges, r.per_pixel.holes, r.per_surfel.psnr,
-      r.per_surfel.psnr_off_edges, r.per_surfel.holes, r.exact.psnr_off_edges, r.captured.psnr_off_edges,
-      r.float_frame.psnr_off_edges, r.per_surfel.psnr_off_edges, r.capture_seconds);
+      r.per_surfel.psnr_off_edges, r.same_weights.holes, r.same_weights.psnr, r.exact.psnr_off_edges,
+      r.captured.psnr_off_edges, r.float_frame.psnr_off_edges, r.per_surfel.psnr_off_edges,
+      r.capture_seconds);
 }
 
 std::vector<std::string> cells(std::string_view setting, const QualityRow& r) {
@@ -100,7 +111,8 @@ std::vector<std::string> cells(std::string_view setting, const QualityRow& r) {
           decibels(r.per_pixel.psnr_off_edges),
           decibels(r.per_surfel.psnr),
           decibels(r.per_surfel.psnr_off_edges),
-          fmt::format("{}", r.per_pixel.holes + r.per_surfel.holes),
+          fmt::format("{}", r.per_pixel.holes + r.same_weights.holes),
+          decibels(r.same_weights.psnr),
           decibels(r.exact.psnr_off_edges),
           decibels(r.captured.psnr_off_edges),
           decibels(r.float_frame.psnr_off_edges),
@@ -144,13 +156,15 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   for (const double sum : traces::filter_sums(scene.surfels, scene.splatting, 1))
     exact.push_back(traces::equal_weights(1 / sum));
 
-  row.exact = compare(draw_exactly(scene, exact), reference);
-  row.captured = compare(draw_exactly(scene, captured.weights), reference);
+  row.exact = compare(frame_of(draw_exactly(scene, exact)), reference);
+  const kernels::ScreenSpacePicture same_weights = draw_exactly(scene, captured.weights);
+  row.captured = compare(frame_of(same_weights), reference);
   Machine exact_frame = machine;
   exact_frame.numbers.frame = FrameFormat::float32;
   row.float_frame = compare(draw(scene, captured, exact_frame), reference);
   const Frame frame = draw(scene, captured, machine);
   row.per_surfel = compare(frame, reference);
+  row.same_weights = compare(frame, undivided(same_weights));
   row.picture = picture_of(frame);
   scene.splatting.algorithm = traces::Algorithm::ewa_per_pixel;
   const Trace per_pixel = traces::record(scene, machine.numbers).trace;
@@ -187,11 +201,14 @@ void study_quality(Findings& findings, const Progress& progress) {
   findings.result("quality", list);
   using enum Report::Align;
   findings.report().table(
-      fmt::format("{} surfels at 512 x 512. PSNR in dB over the surface, and off edges, of both "
-                  "normalisations; off edges also from exact weights in double precision, from captured "
-                  "weights in double precision, and from these with a float frame buffer; seconds of the "
-                  "capture of weights.",
-                  kSurfels),
+      fmt::format(
+          "{} surfels at 512 x 512. PSNR in dB over the surface, and off edges, of both "
+          "normalisations against the reference, which divides in each pixel; per surfel also against "
+          "Eq. 5 in double precision with the same weights; off edges also from exact weights in double "
+          "precision, from captured "
+          "weights in double precision, and from these with a float frame buffer; seconds of the "
+          "capture of weights.",
+          kSurfels),
       {{"model"},
        {"splatting"},
        {"per pixel", number},
@@ -199,6 +216,7 @@ void study_quality(Findings& findings, const Progress& progress) {
        {"per surfel", number},
        {"off edges", number},
        {"holes", number},
+       {"against Eq. 5", number},
        {"exact", number},
        {"captured", number},
        {"float frame", number},

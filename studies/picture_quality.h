@@ -33,6 +33,7 @@ struct QualityRow {
   Comparison captured;         // weights captured on the machine, drawn in double precision
   Comparison float_frame;      // the same weights, drawn by the machine with a float frame buffer
   Comparison per_surfel;       // and with its own of 8 bits: the machine's picture
+  Comparison same_weights;     // the machine's, against Eq. 5 in double precision with the captured weights
   double capture_seconds = 0;  // of the host
   std::size_t unseen = 0;      // surfels that no view of the capture saw
   Image reference, picture;    // picture: normalised per surfel

@@ -27,6 +27,7 @@ TEST(PictureQuality, TheWeightsAndTheEdgesCostWhatEightBitsDoNot) {
   EXPECT_NEAR(row.per_surfel.psnr_off_edges, row.captured.psnr_off_edges, 1);
   EXPECT_NEAR(row.float_frame.psnr_off_edges, row.captured.psnr_off_edges, 1);
   EXPECT_LT(row.per_surfel.psnr, row.per_surfel.psnr_off_edges);
+  EXPECT_GT(row.same_weights.psnr, 36);  // at edges too
   EXPECT_GT(row.capture_seconds, 0);
 }
 

@@ -62,8 +62,8 @@ struct Comparison {
   // pixels, as a prefiltered edge does: there the two are different pictures, in whatever precision.
   std::size_t pixels_off_edges = 0;
   double psnr_off_edges = 0;  // dB
-  // Pixels inside the silhouette that the frame left black and without weight: their rays and those of the
-  // eight pixels about them meet an opaque quad of the reference.
+  // Pixels inside the silhouette that the frame left black and without weight, where the reference is not as
+  // good as black: their rays and those of the eight pixels about them meet an opaque quad of the reference.
   std::size_t inside_pixels = 0;
   std::size_t holes = 0;
 };
