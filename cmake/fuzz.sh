@@ -9,7 +9,7 @@ names=("${@:2}")
 [ ${#names[@]} -gt 0 ] || names=(assembler token_reader machine scene ply nrrd trace)
 "$root/cmake/install_packages.sh"
 for name in "${names[@]}"; do
-  "$root/cmake/build.sh" "${name}_fuzz" fuzz -DCMAKE_CXX_COMPILER=clang++-14 -DSPLATSCOPE_FUZZ=ON
+  "$root/cmake/build.sh" "${name}_fuzz" fuzz -DCMAKE_CXX_COMPILER=clang++-22 -DSPLATSCOPE_FUZZ=ON
 done
 for name in "${names[@]}"; do
   mkdir -p "$build/corpus/$name"

@@ -65,14 +65,14 @@ struct Nv20 {
 };
 
 template <typename A>
-typename A::Vector evaluate_in(Operation operation, const std::array<typename A::Vector, 3>& sources) {
-  using Vector = typename A::Vector;
+A::Vector evaluate_in(Operation operation, const std::array<typename A::Vector, 3>& sources) {
+  using Vector = A::Vector;
   const Vector &a = sources[0], &b = sources[1], &c = sources[2];
   const auto each = [](auto&& component) {
     return Vector{component(std::size_t{0}), component(std::size_t{1}), component(std::size_t{2}),
                   component(std::size_t{3})};
   };
-  const auto all = [](typename A::Value value) { return Vector{value, value, value, value}; };
+  const auto all = [](A::Value value) { return Vector{value, value, value, value}; };
   const auto pairs = [&](auto function) { return each([&](std::size_t i) { return function(a[i], b[i]); }); };
   switch (operation) {
     case Operation::move:
