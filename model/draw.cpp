@@ -33,7 +33,7 @@ struct ShadedFragments {
 // Windows of one piece of a triangle in one band.
 struct Band {
   std::size_t piece = 0;
-  bool noted = false;
+  bool noted = false;                // its quads go into the work record
   std::size_t first = 0, count = 0;  // of the batch's windows
 };
 

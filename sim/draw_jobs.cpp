@@ -48,21 +48,22 @@ isa::Program load(const Trace& trace, std::uint32_t program) {
 
 void check_work(const DrawJob& job) {
   const DrawWork& work = *job.work;
-  std::uint64_t quads = 0, passed = 0, vertices = 0;
+  std::uint64_t quads = 0, quads_passed = 0, vertices = 0;
   for (std::size_t i = 0; i < work.triangles.size(); ++i) {
     if (work.samples_only && !is_sampled(i)) continue;
     quads += work.triangles[i].quad_count;
-    passed += work.triangles[i].quads_passed;
+    quads_passed += work.triangles[i].quads_passed;
     vertices += work.triangles[i].new_vertices;
   }
-  std::uint64_t blocks = 0;
+  std::uint64_t passed = 0, blocks = 0;  // that the quads themselves have
   for (const QuadWork& quad : work.quads) {
     blocks += quad.texel_block_count;
-    passed -= quad.passed != 0;
+    passed += quad.passed != 0;
   }
   if (work.samples_only) vertices = 0;
-  const bool fits = quads == work.quads.size() && passed == 0 && vertices == work.shaded_vertices.size() &&
-                    blocks == work.texel_blocks.size() && work.triangles.size() == job.draw->index_count / 3;
+  const bool fits = quads == work.quads.size() && quads_passed == passed &&
+                    vertices == work.shaded_vertices.size() && blocks == work.texel_blocks.size() &&
+                    work.triangles.size() == job.draw->index_count / 3;
   if (!fits)
     throw ModelError("the work record of command " + std::to_string(job.work->command) + " does not add up");
 }

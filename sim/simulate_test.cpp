@@ -183,6 +183,10 @@ TEST(Simulate, WorkThatDoesNotFitTheTraceIsABug) {
   EXPECT_THROW(simulate(made.trace, {}, machine), ModelError);
   made.work[0].quads.pop_back();
   EXPECT_THROW(simulate(made.trace, made.work, machine), ModelError);
+  made = testing::simple_trace(1);
+  simulate(made.trace, made.work, machine);
+  made.work[0].samples_only = true;
+  EXPECT_THROW(simulate(made.trace, made.work, machine), ModelError);
 }
 
 // Work that comes while the simulation runs, one draw after the other, each in the place of the one before.

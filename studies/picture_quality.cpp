@@ -83,9 +83,8 @@ nlohmann::ordered_json json_of(std::string_view setting, const QualityRow& row) 
 
 std::string head(std::string_view setting) {
   return fmt::format(
-      "{}\n{:<14} {:>7} | {:^19} | {:^26} | {:^34} | {:>7}\n{:<14} {:>7} | {:>5} {:>6} {:>6} | {:>5} {:>6} "
-      "{:>6} {:>6} "
-      "| {:>8} {:>8} {:>8} {:>7} | {:>7}\n",
+      "{}\n{:<14} {:>7} | {:^19} | {:^26} | {:^34} | {:>7}\n"
+      "{:<14} {:>7} | {:>5} {:>6} {:>6} | {:>5} {:>6} {:>6} {:>6} | {:>8} {:>8} {:>8} {:>7} | {:>7}\n",
       setting, "", "", "per pixel", "per surfel", "per surfel off edges, step by step", "capture", "model",
       "surfels", "all", "off e.", "holes", "all", "off e.", "holes", "Eq. 5", "exact", "captured", "float",
       "8 bits", "");
@@ -93,10 +92,8 @@ std::string head(std::string_view setting) {
 
 std::string line(const QualityRow& r) {
   return fmt::format(
-      "{:<14} {:>7} | {:>5.1f} {:>6.1f} {:>6} | {:>5.1f} {:>6.1f} {:>6} {:>6.1f} | {:>8.1f} {:>8.1f} "
-      "{:>8.1f} "
-      "{:>7.1f} | "
-      "{:>5.1f} s\n",
+      "{:<14} {:>7} | {:>5.1f} {:>6.1f} {:>6} | {:>5.1f} {:>6.1f} {:>6} {:>6.1f} "
+      "| {:>8.1f} {:>8.1f} {:>8.1f} {:>7.1f} | {:>5.1f} s\n",
       r.name, r.surfels, r.per_pixel.psnr, r.per_pixel.psnr_off_edges, r.per_pixel.holes, r.per_surfel.psnr,
       r.per_surfel.psnr_off_edges, r.same_weights.holes, r.same_weights.psnr, r.exact.psnr_off_edges,
       r.captured.psnr_off_edges, r.float_frame.psnr_off_edges, r.per_surfel.psnr_off_edges,
@@ -205,9 +202,8 @@ void study_quality(Findings& findings, const Progress& progress) {
           "{} surfels at 512 x 512. PSNR in dB over the surface, and off edges, of both "
           "normalisations against the reference, which divides in each pixel; per surfel also against "
           "Eq. 5 in double precision with the same weights; off edges also from exact weights in double "
-          "precision, from captured "
-          "weights in double precision, and from these with a float frame buffer; seconds of the "
-          "capture of weights.",
+          "precision, from captured weights in double precision, and from these with a float frame "
+          "buffer; seconds of the capture of weights.",
           kSurfels),
       {{"model"},
        {"splatting"},

@@ -166,7 +166,7 @@ kernels::ScreenSpacePicture volume_reference(const traces::VolumeScene& scene) {
   reference.width = picture.width;
   reference.height = picture.height;
   for (const glm::dvec4& pixel : picture.pixels) {
-    reference.sums.emplace_back(glm::dvec3(pixel), pixel.w > 0.5 / 255 ? 1 : 0);
+    reference.sums.emplace_back(glm::dvec3(pixel), pixel.w > kHalfStep ? 1 : 0);
     reference.normalized.push_back(glm::min(glm::dvec3(pixel) + (1 - pixel.w) * scene.background, 1.0));
   }
   reference.depth.assign(picture.pixels.size(), std::numeric_limits<double>::infinity());

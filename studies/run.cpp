@@ -319,8 +319,7 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   if (fidelity == Fidelity::throughput) options.record = Record::samples;
   if (timing.heat_maps) options.record = Record::everything;
   const auto run_it = [&] {
-    if (fidelity == Fidelity::throughput && !timing.heat_maps)
-      return run_throughput(trace, machine, options, progress, on_frame);
+    if (options.record == Record::samples) return run_throughput(trace, machine, options, progress, on_frame);
     if (fidelity == Fidelity::cycle || fidelity == Fidelity::referee)
       return run_beside(trace, machine, fidelity, options, progress, on_frame, timing);
     return run_after(trace, machine, fidelity, options, progress, on_frame, timing);

@@ -89,10 +89,11 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
   Writer text;
   const std::vector<std::byte> stored = traces::trace_bytes(trace);
   const std::string program = bytes_of("/proc/self/exe");
-  const NumberFormats& f = options.formats;
-  for (const int value :
-       {int(f.vertex_arithmetic), int(f.color), int(f.combiner), int(f.frame), int(f.frame_rounding),
-        int(f.depth), f.subpixel_bits, f.filter_bits, f.reciprocal_bits, options.vertex_cache_entries})
+  // All of them by name: one more does not compile until it is here too.
+  const auto& [arithmetic, color, combiner, frame, rounding, depth, subpixel_bits, filter_bits,
+               reciprocal_bits] = options.formats;
+  for (const int value : {int(arithmetic), int(color), int(combiner), int(frame), int(rounding), int(depth),
+                          subpixel_bits, filter_bits, reciprocal_bits, options.vertex_cache_entries})
     text.add(value);
   std::string key;
   for (std::uint64_t seed = 0; seed < 2; ++seed) {

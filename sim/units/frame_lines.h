@@ -6,17 +6,18 @@
 
 namespace splatscope::sim {
 
-// A surface of the frame as memory holds it: tiles of 4x4 pixels, one cache line each, rows of tiles.
+// A surface of the frame as memory holds it: rows of tiles (kFrameTileEdge), one cache line each.
 struct FrameLines {
   std::uint32_t tiles_across = 0;
   std::uint32_t tiles_down = 0;
   std::uint32_t bytes_per_pixel = 4;
 
   static FrameLines of(std::uint32_t width, std::uint32_t height, std::uint32_t bytes_per_pixel) {
-    return {(width + 3) / 4, (height + 3) / 4, bytes_per_pixel};
+    const auto tiles = [](std::uint32_t pixels) { return (pixels + kFrameTileEdge - 1) / kFrameTileEdge; };
+    return {tiles(width), tiles(height), bytes_per_pixel};
   }
   std::uint32_t line_of(const QuadWork& quad) const { return quad.y / 2u * tiles_across + quad.x / 2u; }
-  std::uint32_t line_bytes() const { return 16 * bytes_per_pixel; }
+  std::uint32_t line_bytes() const { return kFrameTileEdge * kFrameTileEdge * bytes_per_pixel; }
   std::uint32_t lines() const { return tiles_across * tiles_down; }
   std::uint32_t bytes() const { return lines() * line_bytes(); }
 };
