@@ -64,12 +64,15 @@ Polygon clip(const Polygon& in, const Plane& plane, std::span<const UsedAttribut
   return out;
 }
 
+// A cut point lies on its plane but for rounding, which is of the size of the corners and is divided by a w
+// that can be near 0: what that moves out of the clip volume is moved back.
 WindowVertex project(const ClipVertex& vertex, const Viewport& viewport) {
-  const double inverse_w = 1.0 / vertex.position[3];
+  const double inverse_w = 1.0 / std::max(double{vertex.position[3]}, kPositiveW.offset);
+  const auto in_band = [](double pixels) { return std::clamp(pixels, -2 * kGuardBand, 2 * kGuardBand); };
   WindowVertex out;
-  out.x = (1.0 + vertex.position[0] * inverse_w) * 0.5 * viewport.width + kPixelCentre;
-  out.y = (1.0 - vertex.position[1] * inverse_w) * 0.5 * viewport.height + kPixelCentre;
-  out.z = vertex.position[2] * inverse_w;
+  out.x = in_band((1.0 + vertex.position[0] * inverse_w) * 0.5 * viewport.width + kPixelCentre);
+  out.y = in_band((1.0 - vertex.position[1] * inverse_w) * 0.5 * viewport.height + kPixelCentre);
+  out.z = std::clamp(vertex.position[2] * inverse_w, 0.0, 1.0);
   out.inverse_w = inverse_w;
   out.attributes = vertex.attributes;
   return out;

@@ -105,6 +105,34 @@ TEST(Primitive, KeepsAreaWhenClippedByTheGuardBand) {
   EXPECT_NEAR(128.0 * 65536, sum, 1e-4 * sum + 128.0 * 512);
 }
 
+// A cut point lies on its plane but for rounding, which is of the size of the corners and is divided by its
+// w.
+TEST(Primitive, StaysWithinTheGuardBandWhateverTheCorners) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> mantissa(-1, 1);
+  std::uniform_int_distribution<int> exponent(-126, 127);
+  const auto number = [&] { return std::ldexp(mantissa(random), exponent(random)); };
+  const auto corner = [&] { return at(number(), number(), number(), number()); };
+  int cut = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Outcome out = run({corner(), corner(), corner()});
+    cut += out.assembled.pieces > 0;
+    for (int piece = 0; piece < out.assembled.pieces; ++piece) {
+      for (const WindowVertex& vertex : out.pieces[static_cast<std::size_t>(piece)]) {
+        ASSERT_LE(std::abs(vertex.x), 2 * kGuardBand);
+        ASSERT_LE(std::abs(vertex.y), 2 * kGuardBand);
+        ASSERT_GE(vertex.z, 0);
+        ASSERT_LE(vertex.z, 1);
+        ASSERT_GT(vertex.inverse_w, 0);
+        ASSERT_TRUE(std::isfinite(vertex.inverse_w));
+      }
+    }
+  }
+  EXPECT_GT(cut, 100);
+}
+
 TEST(Primitive, SurvivesExtremeCoordinates) {
   const float huge = 1e30f, tiny = 1e-38f;
   for (const float x : {huge, -huge, tiny, 0.0f}) {
