@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "kernels/object_space_ewa/quad_runner.h"
 #include "kernels/short_ewa/programs.h"
@@ -36,6 +38,20 @@ std::vector<Surfel> mixed_surfels(const View& view, std::uint32_t seed) {
                     .spacing = {1e4, 1e6}};  // edge-on: rounding makes a variance negative
   for (int i = 0; i < 500; ++i) surfels.push_back(random_surfel(view, huge, generator));
   return surfels;
+}
+
+// The distance is that of the normal as it stands in the vertex, rounded to float: not of the exact one.
+TEST(Programs, the_plane_in_a_vertex_belongs_to_the_normal_beside_it) {
+  const View view = test_view();
+  for (const Surfel& surfel : mixed_surfels(view, std::random_device{}())) {
+    const std::span<const VertexField> fields = ewa_program("facing").fields;
+    std::vector<std::byte> vertex(vertex_bytes(fields));
+    write_vertex(fields, {surfel, {0, 0}, 1}, vertex.data());
+    std::array<float, 7> written;  // o, n, -n.o
+    std::memcpy(written.data(), vertex.data(), sizeof written);
+    const glm::dvec3 n(written[3], written[4], written[5]);
+    ASSERT_EQ(static_cast<float>(-glm::dot(n, surfel.position)), written[6]);
+  }
 }
 
 TEST(Programs, slots_of_the_paper) {
