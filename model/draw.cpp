@@ -64,6 +64,10 @@ class Batch {
     }
   }
 
+  // Orders its last stage before the next filling: oneTBB counts the tokens, but its count releases nothing.
+  void hand_back() { handed_back_.store(true, std::memory_order_release); }
+  void take_again() { handed_back_.exchange(false, std::memory_order_acquire); }
+
   GeometryBatch geometry;
   DrawWork own_work;
   DrawWork& work;
@@ -86,6 +90,7 @@ class Batch {
   Frame& frame_;
   std::vector<ShadedFragments> shaded_;
   std::size_t shaded_count_ = 0;
+  std::atomic<bool> handed_back_ = true;
 };
 
 // The stages of a draw behind the geometry: depth is tested and colours are written batch by batch, in their
@@ -278,6 +283,7 @@ void run_on_many_threads(Indices& indices, std::array<std::unique_ptr<Batch>, kB
   std::size_t next = 0;
   const auto fill = [&](tbb::flow_control& control) -> Batch* {
     Batch* batch = batches[next++ % kBatchesInFlight].get();
+    batch->take_again();
     if (indices.fill(batch->geometry)) return batch;
     control.stop();
     return nullptr;
@@ -294,8 +300,10 @@ void run_on_many_threads(Indices& indices, std::array<std::unique_ptr<Batch>, kB
           stage(filter_mode::parallel, [](Batch& batch) { batch.geometry.process(); }) &
           stage(filter_mode::serial_in_order, [&](Batch& batch) { stages.test_depth(batch); }) &
           stage(filter_mode::parallel, [](Batch& batch) { DrawStages::shade(batch); }) &
-          tbb::make_filter<Batch*, void>(filter_mode::serial_in_order,
-                                         [&](Batch* batch) { stages.write(*batch); }));
+          tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
+            stages.write(*batch);
+            batch->hand_back();
+          }));
 }
 
 }  // namespace
