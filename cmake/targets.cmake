@@ -112,7 +112,7 @@ function(splatscope_fuzzers folder)
     else()
       add_executable(${name} ${source} ${CMAKE_SOURCE_DIR}/tests/fuzz/short_run.cpp)
       # Seconds: a minute for all seven.
-      add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 8)
+      add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 9)
     endif()
     target_link_libraries(${name} PRIVATE ${ARGN} splatscope_options)
   endforeach()
