@@ -51,6 +51,11 @@ inline constexpr std::size_t kSampledRunsApart = 16;
 constexpr bool is_sampled(std::size_t triangle) {
   return triangle / kSampledRun % kSampledRunsApart == 0;
 }
+// The first of them from a triangle on.
+constexpr std::size_t sampled_from(std::size_t triangle) {
+  constexpr std::size_t kApart = kSampledRun * kSampledRunsApart;
+  return is_sampled(triangle) ? triangle : (triangle / kApart + 1) * kApart;
+}
 
 struct DrawWork {
   std::uint32_t command = 0;                   // its place in Trace::commands

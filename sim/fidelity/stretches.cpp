@@ -4,6 +4,34 @@
 #include <cmath>
 
 namespace splatscope::sim {
+namespace {
+
+// Of a stretch of triangles.
+struct Sums {
+  std::uint32_t vertices = 0, pieces = 0, in_frame = 0;  // triangles with a piece
+  std::uint64_t raster_clocks = 0, quads = 0, quads_passed = 0;
+};
+
+Sums sums_of(std::span<const TriangleWork> triangles, std::uint32_t tiles_per_clock,
+             std::uint32_t quads_per_clock) {
+  Sums sums;
+  for (const TriangleWork& triangle : triangles) {
+    sums.vertices += triangle.new_vertices;
+    if (triangle.pieces == 0) continue;
+    sums.pieces += triangle.pieces;
+    ++sums.in_frame;
+    const auto clocks = [](std::uint32_t items, std::uint32_t a_clock) {
+      return items / a_clock + (items % a_clock != 0);
+    };
+    sums.raster_clocks += std::max(
+        {1U, clocks(triangle.tile_count, tiles_per_clock), clocks(triangle.quad_count, quads_per_clock)});
+    sums.quads += triangle.quad_count;
+    sums.quads_passed += triangle.quads_passed;
+  }
+  return sums;
+}
+
+}  // namespace
 
 double whole_clocks(double items, int a_clock) {
   return std::ceil(items / a_clock);
@@ -43,20 +71,15 @@ std::vector<Clocks> Stretches::of(const DrawJob& job) {
 Clocks Stretches::next(const DrawJob& job, const Traffic& traffic,
                        std::span<const TriangleWork> triangles) const {
   const int width = machine_.pixel.quads_per_clock;
-  double vertices = 0, pieces = 0, quads = 0, colored = 0;
+  const Sums sums = sums_of(triangles, static_cast<std::uint32_t>(machine_.raster.tiles_per_clock),
+                            static_cast<std::uint32_t>(width));
+  auto vertices = static_cast<double>(sums.vertices), pieces = static_cast<double>(sums.pieces);
+  const auto quads = static_cast<double>(sums.quads);
+  const double colored = job.draw->state.color_write ? static_cast<double>(sums.quads_passed) : 0;
   Clocks clocks{};
-  for (const TriangleWork& triangle : triangles) {
-    vertices += triangle.new_vertices;
-    clocks[kPrimitive] += machine_.primitive.clocks_per_triangle;
-    if (triangle.pieces == 0) continue;
-    pieces += triangle.pieces;
-    clocks[kPrimitive] += (triangle.pieces - 1) * machine_.primitive.clip_clocks;
-    clocks[kRaster] += std::max({1.0, whole_clocks(triangle.tile_count, machine_.raster.tiles_per_clock),
-                                 whole_clocks(triangle.quad_count, width)});
-    quads += triangle.quad_count;
-    colored += triangle.quads_passed;
-  }
-  if (!job.draw->state.color_write) colored = 0;
+  clocks[kPrimitive] = static_cast<double>(triangles.size()) * machine_.primitive.clocks_per_triangle +
+                       static_cast<double>(sums.pieces - sums.in_frame) * machine_.primitive.clip_clocks;
+  clocks[kRaster] = static_cast<double>(sums.raster_clocks);
   const bool a_quad = reads_a_vertex_a_quad(what_if_);
   const double indices = a_quad ? 0 : 3 * static_cast<double>(triangles.size());
   const double read = a_quad ? vertices / 4 : vertices;

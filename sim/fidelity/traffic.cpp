@@ -83,11 +83,15 @@ Traffic TrafficCounter::of(const DrawJob& job) {
   auto written = work.tiles_written.begin();
   auto quad = work.quads.begin();
   const std::uint32_t* block = work.texel_blocks.data();
-  for (std::size_t triangle = 0; triangle < work.triangles.size(); ++triangle) {
-    const bool sampled = is_sampled(triangle);
-    for (; written != work.tiles_written.end() && written->triangle <= triangle; ++written)
+  const auto note_written = [&](std::size_t up_to) {
+    for (; written != work.tiles_written.end() && written->triangle <= up_to; ++written)
       cleared_[written->tile] = 0;
-    if (work.samples_only && !sampled) continue;
+  };
+  const std::size_t count = work.triangles.size();
+  for (std::size_t triangle = 0; triangle < count;
+       triangle = work.samples_only ? sampled_from(triangle + 1) : triangle + 1) {
+    const bool sampled = is_sampled(triangle);
+    note_written(triangle);
     for (const auto end = quad + work.triangles[triangle].quad_count; quad != end; ++quad) {
       const bool writes_depth = depth_write && quad->passed != 0;
       std::uint8_t& cleared = cleared_[layout_.depth.line_of(*quad)];
@@ -96,6 +100,7 @@ Traffic TrafficCounter::of(const DrawJob& job) {
       block += quad->texel_block_count;
     }
   }
+  note_written(count);
   return caches.of_a_quad();
 }
 
