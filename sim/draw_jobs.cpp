@@ -49,7 +49,7 @@ isa::Program load(const Trace& trace, std::uint32_t program) {
 void check_work(const DrawJob& job) {
   const DrawWork& work = *job.work;
   std::uint64_t quads = 0, quads_passed = 0, vertices = 0;
-  for (std::size_t i = 0; i < work.triangles.size(); i = work.samples_only ? sampled_from(i + 1) : i + 1) {
+  for (std::size_t i = 0; i < work.triangles.size(); i = work.next_recorded(i)) {
     quads += work.triangles[i].quad_count;
     quads_passed += work.triangles[i].quads_passed;
     vertices += work.triangles[i].new_vertices;

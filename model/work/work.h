@@ -51,11 +51,6 @@ inline constexpr std::size_t kSampledRunsApart = 16;
 constexpr bool is_sampled(std::size_t triangle) {
   return triangle / kSampledRun % kSampledRunsApart == 0;
 }
-// The first of them from a triangle on.
-constexpr std::size_t sampled_from(std::size_t triangle) {
-  constexpr std::size_t kApart = kSampledRun * kSampledRunsApart;
-  return is_sampled(triangle) ? triangle : (triangle / kApart + 1) * kApart;
-}
 
 struct DrawWork {
   std::uint32_t command = 0;                   // its place in Trace::commands
@@ -67,6 +62,13 @@ struct DrawWork {
   // triangles, and what the others left in the depth buffer, in order.
   bool samples_only = false;
   std::vector<TileWritten> tiles_written;
+
+  // The first triangle behind this one whose quads, if it has any, are in the record.
+  std::size_t next_recorded(std::size_t triangle) const {
+    constexpr std::size_t kApart = kSampledRun * kSampledRunsApart;
+    const std::size_t next = triangle + 1;
+    return !samples_only || is_sampled(next) ? next : (next / kApart + 1) * kApart;
+  }
 };
 
 }  // namespace splatscope

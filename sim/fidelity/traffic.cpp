@@ -88,8 +88,7 @@ Traffic TrafficCounter::of(const DrawJob& job) {
       cleared_[written->tile] = 0;
   };
   const std::size_t count = work.triangles.size();
-  for (std::size_t triangle = 0; triangle < count;
-       triangle = work.samples_only ? sampled_from(triangle + 1) : triangle + 1) {
+  for (std::size_t triangle = 0; triangle < count; triangle = work.next_recorded(triangle)) {
     const bool sampled = is_sampled(triangle);
     note_written(triangle);
     for (const auto end = quad + work.triangles[triangle].quad_count; quad != end; ++quad) {
