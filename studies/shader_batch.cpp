@@ -73,7 +73,7 @@ ordered_json run_pixel(const ShaderCase& test, const isa::Program& program) {
   outputs["r0"] = hex_of({batch->r0[0][0], batch->r0[1][0], batch->r0[2][0], batch->r0[3][0]});
   if (runnable.writes_depth())
     outputs["depth"] = {fmt::format("{:08x}", std::bit_cast<std::uint32_t>(batch->depth[0]))};
-  if (batch->killed != 0) outputs["killed"] = true;
+  if (batch->killed.any()) outputs["killed"] = true;
   return outputs;
 }
 

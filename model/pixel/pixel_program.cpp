@@ -280,7 +280,7 @@ void PixelProgram::Decoded::run(std::span<const Vec4> values, FragmentBatch& bat
                                 const Sampler& sampler, const BumpStages& bump, bool sampled_ahead) const {
   Registers registers;
   prepare(values, batch, count, registers);
-  batch.killed = 0;
+  batch.killed.reset();
   const Context context{version, batch, count, sampler, bump, sampled_ahead};
   for (std::size_t at = 0; at < steps.size();) at = execute(at, registers, context);
   for (std::size_t component = 0; component < 4; ++component)
@@ -291,7 +291,7 @@ std::vector<FragmentState> PixelProgram::trace(std::span<const Vec4> constants, 
                                                const Sampler& sampler, const BumpStages& bump) const {
   const auto registers = std::make_unique<Registers>();
   decoded_->prepare(constants, batch, 1, *registers);
-  batch.killed = 0;
+  batch.killed.reset();
   const Context context{decoded_->version, batch, 1, sampler, bump};
   const auto state = [&] {
     FragmentState result;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <bitset>
 #include <functional>
 #include <memory>
 #include <span>
@@ -13,8 +13,8 @@
 
 namespace splatscope::pixel {
 
-inline constexpr int kBatch = 64;  // fragments executed together
-inline constexpr int kStages = 6;  // texture stages and coordinate sets: 4 up to ps_1_3
+inline constexpr int kBatch = 256;  // fragments executed together
+inline constexpr int kStages = 6;   // texture stages and coordinate sets: 4 up to ps_1_3
 
 inline constexpr int kLaneStride = kBatch + 16;  // with room behind for a whole SIMD register
 using Lanes = float[kLaneStride];
@@ -26,7 +26,7 @@ struct FragmentBatch {
   alignas(64) Lanes t[kStages][4];  // texture coordinates
   alignas(64) Lanes r0[4];          // result
   alignas(64) Lanes depth;          // result of texdepth and texm3x2depth, where writes_depth()
-  std::uint64_t killed = 0;         // result: bit i where texkill cancelled fragment i
+  std::bitset<kBatch> killed;       // result: bit i where texkill cancelled fragment i
 };
 
 // Samples the texture of a stage at coordinates u v w (u, v for a 2D one) of fragments 0..count-1.

@@ -16,9 +16,8 @@ void sample(int stage, const Register& coordinates, Registers& registers, const 
 }
 
 void kill_negative(const Lanes* components, const Context& context) {
-  for (int i = 0; i < context.count; ++i)
-    if (components[0][i] < 0 || components[1][i] < 0 || components[2][i] < 0)
-      context.batch.killed |= std::uint64_t{1} << i;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(context.count); ++i)
+    if (components[0][i] < 0 || components[1][i] < 0 || components[2][i] < 0) context.batch.killed.set(i);
 }
 
 // numerator/denominator, or 1 where the denominator is 0.

@@ -12,7 +12,7 @@ using Attributes = std::array<Vec4, primitive::kAttributes>;  // of a vertex
 
 // Fragments on their way to the pixel unit: structure of arrays, with room behind for a whole SIMD register.
 struct FragmentPlaces {
-  static constexpr std::size_t kCapacity = 64, kStride = kCapacity + 16;
+  static constexpr std::size_t kCapacity = 256, kStride = kCapacity + 16;
   alignas(64) float x[kStride], y[kStride];  // pixels from their triangle's origin pixel
   alignas(64) std::uint32_t pixel[kStride];  // of the frame, row-major
 };
