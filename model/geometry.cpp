@@ -57,7 +57,6 @@ void GeometryBatch::shade() {
     const unsigned grouped = vertex::fetch_grouped(
         inputs_, bindings_.vertices.bytes, bindings_.draw.vertex_stride,
         std::span(vertices).subspan(first, count), program_.input(), program_.grouped_input());
-    prefetch(first + count);
     program_.run(static_cast<int>(count), grouped);
     primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
                        first);
@@ -74,13 +73,6 @@ void GeometryBatch::shade() {
   }
 }
 
-// Fetches ahead what the vertices from `first` read: their bytes come from memory while a program runs.
-void GeometryBatch::prefetch(std::size_t first) const {
-  const std::size_t end = std::min(vertices.size(), first + vertex::kBatch);
-  for (std::size_t i = first; i < end; ++i)
-    hwy::Prefetch(bindings_.vertices.bytes.data() + std::size_t{vertices[i]} * bindings_.draw.vertex_stride);
-}
-
 void GeometryBatch::assemble(BatchTriangle& triangle) {
   const auto [a, b, c] = triangle.vertices;
   const auto& outside = projected_.outside;
@@ -90,7 +82,7 @@ void GeometryBatch::assemble(BatchTriangle& triangle) {
     return;
   }
   triangle.pieces = 1;
-  add_piece({a, b, c});
+  add_piece(a, b, c);
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     const std::size_t i = triangle.vertices[corner];
     corners_.set(waiting_ - 1, corner, projected_.x[i], projected_.y[i], projected_.z[i],
@@ -113,7 +105,7 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
       places[corner] = static_cast<std::uint32_t>(attributes_.size());
       attributes_.push_back(clipped_[piece][corner].attributes);
     }
-    add_piece(places);
+    add_piece(places[0], places[1], places[2]);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       const primitive::WindowVertex& vertex = clipped_[piece][corner];
       corners_.set(waiting_ - 1, corner, vertex.x, vertex.y, vertex.z, vertex.inverse_w);
@@ -121,16 +113,17 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
   }
 }
 
-void GeometryBatch::add_piece(const std::array<std::uint32_t, 3>& corners) {
+// By value: three words written and then read as fewer, larger ones make a processor wait.
+void GeometryBatch::add_piece(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   if (waiting_ == raster::Corners::kCapacity) set_up();
-  piece_corners_.push_back(corners);
+  piece_corners_.push_back({a, b, c});
   ++waiting_;
 }
 
 void GeometryBatch::set_up() {
   if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
   const int bits = options_.formats.subpixel_bits;
-  raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits),
+  raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits), !bindings_.attributes.empty(),
                  std::span(setups_).subspan(piece_corners_.size() - waiting_, waiting_));
   waiting_ = 0;
 }
@@ -172,6 +165,8 @@ std::uint16_t Indices::place_of(std::uint32_t index, Known& known, GeometryBatch
   if (known.batch < batch_) {
     known.batch = batch_ + static_cast<std::uint32_t>(batch.vertices.size());
     batch.vertices.push_back(number);
+    // Its bytes come from memory while the others are filled in.
+    hwy::Prefetch(bindings_->vertices.bytes.data() + std::size_t{number} * bindings_->draw.vertex_stride);
   }
   return static_cast<std::uint16_t>(known.batch - batch_);
 }

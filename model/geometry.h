@@ -53,13 +53,12 @@ class GeometryBatch {
 
  private:
   void shade();
-  void prefetch(std::size_t first) const;
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);
   Vec4 position_of(std::size_t vertex) const {
     return {positions_[0][vertex], positions_[1][vertex], positions_[2][vertex], positions_[3][vertex]};
   }
-  void add_piece(const std::array<std::uint32_t, 3>& corners);
+  void add_piece(std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void set_up();
 
   const DrawBindings& bindings_;

@@ -65,9 +65,10 @@ struct Corners {
 };
 
 // Sets up the first out.size() triangles (at most Corners::kCapacity). `rounding` (pixels) is added to x and
-// y before they are truncated to the grid. Coordinates lie within the guard band.
+// y before they are truncated to the grid. Coordinates lie within the guard band. Not `interpolates`: only
+// the depth is wanted, the other planes stay as they are.
 void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
-            std::span<TriangleSetup> out);
+            bool interpolates, std::span<TriangleSetup> out);
 
 // 8x8-pixel tiles that the rectangle of a setup touches.
 std::uint32_t tiles_touched(const TriangleSetup& setup);

@@ -37,7 +37,7 @@ TriangleSetup set_up(const WindowTriangle& t, int subpixel_bits, double rounding
   const auto corners = std::make_unique<Corners>();
   for (std::size_t i = 0; i < 3; ++i) corners->set(0, i, t[i].x, t[i].y, t[i].z, t[i].inverse_w);
   TriangleSetup setup;
-  raster::set_up(*corners, kViewport, subpixel_bits, rounding, std::span(&setup, 1));
+  raster::set_up(*corners, kViewport, subpixel_bits, rounding, true, std::span(&setup, 1));
   return setup;
 }
 

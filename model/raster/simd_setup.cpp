@@ -115,7 +115,8 @@ HWY_INLINE void store_plane(V constant, V a1, V a2, const Linear& l1, const Line
   put(hn::Add(hn::Mul(a1, l1.dy), hn::Mul(a2, l2.dy)), out[2]);
 }
 
-HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, Lanes& out) {
+// `all`: not only that of the depth.
+HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, bool all, Lanes& out) {
   const V x1 = hn::Sub(p.x[1], p.x[0]), y1 = hn::Sub(p.y[1], p.y[0]);
   const V x2 = hn::Sub(p.x[2], p.x[0]), y2 = hn::Sub(p.y[2], p.y[0]);
   const V area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
@@ -132,6 +133,7 @@ HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, L
   hn::Store(hn::DemoteTo(F{}, hn::Min(hn::Min(z[0], z[1]), z[2])), F{}, out.nearest);
   hn::Store(hn::DemoteTo(F{}, hn::Max(hn::Max(z[0], z[1]), z[2])), F{}, out.furthest);
   store_plane(z[0], hn::Sub(z[1], z[0]), hn::Sub(z[2], z[0]), l1, l2, out.planes[0]);
+  if (!all) return;
   // 1/w relative to its largest keeps the planes in range for any w.
   const V largest = hn::Max(hn::Max(inverse_w[0], inverse_w[1]), inverse_w[2]), zero = hn::Zero(D{});
   const V q0 = hn::Div(inverse_w[0], largest), q1 = hn::Div(inverse_w[1], largest),
@@ -141,7 +143,7 @@ HWY_INLINE void set_up_planes(const Points& p, const V* z, const V* inverse_w, L
   store_plane(q0, hn::Sub(q1, q0), hn::Sub(q2, q0), l1, l2, out.planes[3]);
 }
 
-HWY_INLINE void read(const Lanes& in, std::size_t lane, TriangleSetup& out) {
+HWY_INLINE void read(const Lanes& in, std::size_t lane, bool all, TriangleSetup& out) {
   out.left = in.left[lane];
   out.top = in.top[lane];
   out.right = in.right[lane];
@@ -156,12 +158,12 @@ HWY_INLINE void read(const Lanes& in, std::size_t lane, TriangleSetup& out) {
   out.nearest = in.nearest[lane];
   out.furthest = in.furthest[lane];
   Plane* planes[] = {&out.depth, &out.weight1, &out.weight2, &out.scale};
-  for (std::size_t k = 0; k < 4; ++k)
+  for (std::size_t k = 0; k < (all ? 4 : 1); ++k)
     *planes[k] = {in.planes[k][0][lane], in.planes[k][1][lane], in.planes[k][2][lane]};
 }
 
 void set_up(const Corners& in, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
-            std::span<TriangleSetup> out) {
+            bool interpolates, std::span<TriangleSetup> out) {
   const Grid grid(subpixel_bits);
   const V round = set(rounding);
   Lanes lanes;
@@ -177,9 +179,9 @@ void set_up(const Corners& in, const primitive::Viewport& viewport, int subpixel
       inverse_w[k] = hn::Load(D{}, in.inverse_w[k] + first);
     }
     set_up_coverage(snapped, grid, viewport, lanes);
-    set_up_planes(exact, z, inverse_w, lanes);
+    set_up_planes(exact, z, inverse_w, interpolates, lanes);
     for (std::size_t lane = 0; lane < hn::Lanes(D{}) && first + lane < out.size(); ++lane)
-      read(lanes, lane, out[first + lane]);
+      read(lanes, lane, interpolates, out[first + lane]);
   }
 }
 
@@ -191,8 +193,8 @@ namespace splatscope::raster {
 HWY_EXPORT(set_up);
 
 void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
-            std::span<TriangleSetup> out) {
-  HWY_DYNAMIC_DISPATCH(set_up)(corners, viewport, subpixel_bits, rounding, out);
+            bool interpolates, std::span<TriangleSetup> out) {
+  HWY_DYNAMIC_DISPATCH(set_up)(corners, viewport, subpixel_bits, rounding, interpolates, out);
 }
 }  // namespace splatscope::raster
 #endif

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
+#include <type_traits>
 
 #include "model/number/simd_integer-inl.h"
 #include "model/output/output.h"
@@ -67,6 +69,24 @@ using F = hn::RebindToFloat<I>;
 using VI = hn::Vec<I>;
 using VF = hn::Vec<F>;
 
+// A mask as a number, lane n in bit n, and back: as one word, since bytes would have to be put together.
+static_assert(std::endian::native == std::endian::little);
+using Bits = std::conditional_t<(hn::MaxLanes(I{}) > 8), std::uint16_t, std::uint8_t>;
+template <class D>
+HWY_INLINE std::uint64_t bits_of(D, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(D{}, mask, bytes);
+  Bits bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits;
+}
+HWY_INLINE hn::Mask<U> mask_of(std::uint64_t lanes) {
+  const auto bits = static_cast<Bits>(lanes);
+  std::uint8_t bytes[8] = {};
+  std::memcpy(bytes, &bits, sizeof bits);
+  return hn::LoadMaskBits(U{}, bytes);
+}
+
 // The pixels of a window inside of all edges.
 HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
   std::int32_t corner[3];
@@ -86,9 +106,7 @@ HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
     }
     for (int row = 0; row < kWindow / 2; ++row) {  // all of them: to leave early costs more, unforeseeably
       const VI outside = hn::Or(hn::Or(value[0], value[1]), value[2]);
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(I{}, hn::Gt(outside, hn::Set(I{}, -1)), bits);
-      const std::uint64_t inside = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8;
+      const std::uint64_t inside = bits_of(I{}, hn::Gt(outside, hn::Set(I{}, -1)));
       mask |= inside << (16 * static_cast<std::size_t>(row) + lane);
       for (std::size_t e = 0; e < 3; ++e) value[e] = hn::Add(value[e], step[e]);
     }
@@ -96,19 +114,18 @@ HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
   return mask;
 }
 
-// Window z as the depth buffer stores it: output::quantize_depth. floor(z (2^n - 1) + 1/2) is that of
-// 2^n z - z + 1/2, of which 2^n z is exact: where its fraction f and z cross a half, it is off by one. f -
+// Window z in [0, 1] as the depth buffer stores it: output::quantize_depth. floor(z (2^n - 1) + 1/2) is that
+// of 2^n z - z + 1/2, of which 2^n z is exact: where its fraction f and z cross a half, it is off by one. f -
 // 1/2 is exact where f reaches 1/2, and f + 1/2 where z does.
 HWY_INLINE hn::Vec<U> quantize(VF z, DepthFormat format) {
-  const VF zero = hn::Zero(F{}), half = hn::Set(F{}, 0.5f);
-  const VF clamped = hn::IfThenElseZero(hn::Gt(z, zero), hn::Min(z, hn::Set(F{}, 1.0f)));
-  if (format == DepthFormat::float32) return hn::BitCast(U{}, clamped);
-  const VF scaled = hn::Mul(clamped, hn::Set(F{}, format == DepthFormat::z16 ? 0x1p16f : 0x1p24f));
+  const VF half = hn::Set(F{}, 0.5f);
+  if (format == DepthFormat::float32) return hn::BitCast(U{}, z);
+  const VF scaled = hn::Mul(z, hn::Set(F{}, format == DepthFormat::z16 ? 0x1p16f : 0x1p24f));
   const VI whole = splatscope::HWY_NAMESPACE::integer(scaled);
   const VF fraction = hn::Sub(scaled, hn::ConvertTo(F{}, whole));
   const auto minus_one = [](auto mask) HWY_ATTR { return hn::BitCast(I{}, hn::VecFromMask(F{}, mask)); };
-  const VI more = minus_one(hn::Ge(hn::Sub(fraction, half), clamped));
-  const VI less = minus_one(hn::Lt(hn::Add(fraction, half), clamped));
+  const VI more = minus_one(hn::Ge(hn::Sub(fraction, half), z));
+  const VI less = minus_one(hn::Lt(hn::Add(fraction, half), z));
   return hn::BitCast(U{}, hn::Add(hn::Sub(whole, more), less));
 }
 
@@ -148,7 +165,9 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
   }
   const VF origin = hn::Set(F{}, setup.depth.origin), dx = hn::Set(F{}, setup.depth.dx),
            dy = hn::Set(F{}, setup.depth.dy);
-  const VF nearest = hn::Set(F{}, setup.nearest), furthest = hn::Set(F{}, setup.furthest);
+  // In [0, 1] like what is stored; the lesser first, so that zero has no sign.
+  const VF nearest = hn::Set(F{}, setup.nearest > 0 ? std::min(setup.nearest, 1.0f) : 0.0f),
+           furthest = hn::Set(F{}, setup.furthest > 0 ? std::min(setup.furthest, 1.0f) : 0.0f);
   const VI from_left = hn::Set(I{}, window.x - setup.left);
   std::uint64_t passed = 0;
   for (std::size_t block = 0; block < kBlocks; ++block) {
@@ -163,18 +182,14 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
     const VF within = hn::IfThenElse(hn::Lt(behind, furthest), behind, furthest);
     const auto depth = quantize(within, target.format);
     const auto quads = hn::TableLookupLanes(old[block], to_quads);
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(covered),
-                                  static_cast<std::uint8_t>(covered >> 8)};
-    auto pass = hn::LoadMaskBits(U{}, bits);
+    auto pass = mask_of(covered);
     if (target.test) pass = hn::AndNot(hn::Gt(depth, quads), pass);
     if (target.write) {
       const auto rows = hn::TableLookupLanes(hn::IfThenElse(pass, depth, quads), to_rows);
       hn::StoreU(hn::LowerHalf(half, rows), half, place_of(block));
       hn::StoreU(hn::UpperHalf(half, rows), half, place_of(block) + stride);
     }
-    std::uint8_t out[8] = {};
-    hn::StoreMaskBits(U{}, pass, out);
-    passed |= (out[0] | static_cast<std::uint64_t>(out[1]) << 8) << bit;
+    passed |= bits_of(U{}, pass) << bit;
   }
   return passed;
 }

@@ -22,6 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using F = hn::CappedTag<float, 16>;
 using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
 constexpr std::size_t kAtOnce = 64;
 
 // The texel of each coordinate along one side of `size` texels.
@@ -38,15 +39,18 @@ HWY_INLINE void places(const float* coordinates, std::uint32_t size, std::size_t
 // The texels of `count` places as alpha.
 HWY_INLINE void look_up(const Texture& texture, const std::int32_t* x, const std::int32_t* y,
                         std::size_t count, float* alpha) {
-  const auto index = [&](std::size_t i) {
-    return static_cast<std::size_t>(y[i]) * texture.width + static_cast<std::size_t>(x[i]);
-  };
+  alignas(64) std::uint32_t index[kAtOnce];
+  const auto width = hn::Set(U{}, texture.width);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(U{})) {
+    const auto column = hn::BitCast(U{}, hn::Load(I{}, x + i)), row = hn::BitCast(U{}, hn::Load(I{}, y + i));
+    hn::Store(hn::Add(hn::Mul(row, width), column), U{}, index + i);
+  }
   if (texture.bits != 8) {
-    for (std::size_t i = 0; i < count; ++i) alpha[i] = wide_texel(texture, index(i));
+    for (std::size_t i = 0; i < count; ++i) alpha[i] = wide_texel(texture, index[i]);
     return;
   }
   alignas(64) std::int32_t texels[kAtOnce];
-  for (std::size_t i = 0; i < count; ++i) texels[i] = texture.texels[index(i)];
+  for (std::size_t i = 0; i < count; ++i) texels[i] = texture.texels[index[i]];
   alignas(64) float values[kAtOnce];
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{}))
     hn::Store(hn::Div(hn::ConvertTo(F{}, hn::Load(I{}, texels + i)), hn::Set(F{}, 255.0f)), F{}, values + i);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,11 @@
 #include "model/vertex/steps.h"
 
 namespace splatscope::vertex {
+namespace {
+
+constexpr std::size_t kMostPlans = 8;  // kept for sets of grouped inputs
+
+}  // namespace
 
 struct VertexProgram::Decoded {
   Arithmetic arithmetic = Arithmetic::ieee;
@@ -87,14 +93,14 @@ class VertexProgram::Execution {
   template <typename RunCall>
   void run(int count, unsigned grouped_inputs, RunCall run_call) {
     begin(count, grouped_inputs);
-    for (std::size_t i = 0; i < calls_.size(); ++i) run_step(i, count, run_call);
+    for (std::size_t i = 0; i < plan_->calls.size(); ++i) run_step(i, count, run_call);
   }
 
   // run_call(call, number of lanes)
   template <typename RunCall>
   void run_step(std::size_t i, int count, RunCall run_call) {
-    const auto& [step, grouped] = planned_[i];
-    const Call& call = calls_[i];
+    const auto& [step, grouped] = plan_->steps[i];
+    const Call& call = plan_->calls[i];
     const int lanes = grouped ? count / kGroup : count;
     if (is_address_step(step)) {
       run_address_step(step, each_.workspace, each_.in, count);
@@ -116,7 +122,11 @@ class VertexProgram::Execution {
   };
 
   void set_constants(std::span<const Vec4> constants, Workspace& workspace) const;
-  void plan(unsigned grouped_inputs);
+  struct Plan {
+    std::vector<PlannedStep> steps;
+    std::vector<Call> calls;  // one a step
+  };
+  const Plan& plan_for(unsigned grouped_inputs);
   Call resolve_spread(const Step& step);
   static void run_spread(const Call& call, int count);
   void round_reciprocal(const Call& call, int count) const;
@@ -124,9 +134,8 @@ class VertexProgram::Execution {
   const Decoded& program_;
   Lanes each_;
   std::unique_ptr<Groups> groups_;
-  unsigned planned_for_ = ~0u;  // grouped inputs; at first nothing is planned
-  std::vector<PlannedStep> planned_;
-  std::vector<Call> calls_;  // one a planned step
+  std::map<unsigned, Plan> plans_;  // by grouped inputs: most batches come with one of a few sets
+  const Plan* plan_ = nullptr;      // of the batch
 };
 
 VertexProgram::Execution::Execution(const Decoded& program, std::span<const Vec4> constants,
@@ -158,21 +167,23 @@ void VertexProgram::Execution::enable_groups(const InputBatch& grouped_in, Input
   groups_->lanes.workspace = each_.workspace;  // its constants
 }
 
-void VertexProgram::Execution::plan(unsigned grouped_inputs) {
-  planned_for_ = grouped_inputs;
-  planned_.clear();
+const VertexProgram::Execution::Plan& VertexProgram::Execution::plan_for(unsigned grouped_inputs) {
+  const auto found = plans_.find(grouped_inputs);
+  if (found != plans_.end()) return found->second;
+  if (plans_.size() == kMostPlans) plans_.clear();
+  Plan& plan = plans_[grouped_inputs];
   if (grouped_inputs != 0) {
-    planned_ = plan_groups(program_.steps, grouped_inputs);
+    plan.steps = plan_groups(program_.steps, grouped_inputs);
   } else {
-    for (const Step& step : program_.steps) planned_.push_back({step, false});
+    for (const Step& step : program_.steps) plan.steps.push_back({step, false});
   }
-  calls_.clear();
-  for (const auto& [step, grouped] : planned_) {
+  for (const auto& [step, grouped] : plan.steps) {
     Lanes& lanes = grouped ? groups_->lanes : each_;
-    calls_.push_back(step.operation == Operation::spread
-                         ? resolve_spread(step)
-                         : resolve(step, lanes.workspace, lanes.in, lanes.out));
+    plan.calls.push_back(step.operation == Operation::spread
+                             ? resolve_spread(step)
+                             : resolve(step, lanes.workspace, lanes.in, lanes.out));
   }
+  return plan;
 }
 
 Call VertexProgram::Execution::resolve_spread(const Step& step) {
@@ -212,7 +223,7 @@ void VertexProgram::Execution::run_spread(const Call& call, int count) {
 }
 
 void VertexProgram::Execution::begin(int count, unsigned grouped_inputs) {
-  if (grouped_inputs != planned_for_) plan(grouped_inputs);
+  plan_ = &plan_for(grouped_inputs);
   Workspace& workspace = each_.workspace;
   for (const std::uint16_t index : program_.temporaries_read_first)
     std::fill_n(workspace.temporaries[index][0], 4 * kBatch, 0.0f);
