@@ -109,6 +109,7 @@ class DrawStages {
                state_.depth_test,
                state_.depth_write} {
     work_.samples_only = record_ == Record::samples;
+    if (record_ != Record::nothing) work_.triangles.reserve(bindings.draw.index_count / 3);
     if (work_.samples_only && state_.depth_write) tiles_.emplace(frame.width, frame.height);
   }
 

@@ -1,35 +1,16 @@
 #include "sim/fidelity/stretches.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace splatscope::sim {
 namespace {
 
-// Of a stretch of triangles.
-struct Sums {
-  std::uint32_t vertices = 0, pieces = 0, in_frame = 0;  // triangles with a piece
-  std::uint64_t raster_clocks = 0, quads = 0, quads_passed = 0;
-};
-
-Sums sums_of(std::span<const TriangleWork> triangles, std::uint32_t tiles_per_clock,
-             std::uint32_t quads_per_clock) {
-  Sums sums;
-  for (const TriangleWork& triangle : triangles) {
-    sums.vertices += triangle.new_vertices;
-    if (triangle.pieces == 0) continue;
-    sums.pieces += triangle.pieces;
-    ++sums.in_frame;
-    const auto clocks = [](std::uint32_t items, std::uint32_t a_clock) {
-      return items / a_clock + (items % a_clock != 0);
-    };
-    sums.raster_clocks += std::max(
-        {1U, clocks(triangle.tile_count, tiles_per_clock), clocks(triangle.quad_count, quads_per_clock)});
-    sums.quads += triangle.quad_count;
-    sums.quads_passed += triangle.quads_passed;
-  }
-  return sums;
-}
+constexpr std::size_t kStretchesAtOnce = 64;  // fewer are not worth a task
 
 }  // namespace
 
@@ -59,29 +40,58 @@ double Stretches::agp_clocks(double bytes) const {
   return bytes / machine_.agp.bytes_per_clock * machine_.clock.core_megahertz / machine_.clock.bus_megahertz;
 }
 
+// What the caches do is counted triangle by triangle, beside the sums of all stretches.
 std::vector<Clocks> Stretches::of(const DrawJob& job) {
-  const Traffic traffic = traffic_.of(job);
   const std::span<const TriangleWork> all = job.work->triangles;
+  std::vector<Sums> sums((all.size() + kStretch - 1) / kStretch);
+  const tbb::blocked_range<std::size_t> range(0, sums.size(), kStretchesAtOnce);
+  Traffic traffic;
+  tbb::parallel_invoke([&] { traffic = traffic_.of(job); },
+                       [&] {
+                         tbb::parallel_for(range, [&](const auto& some) {
+                           for (std::size_t i = some.begin(); i != some.end(); ++i) {
+                             const std::size_t first = i * kStretch;
+                             sums[i] = sums_of(all.subspan(first, std::min(kStretch, all.size() - first)));
+                           }
+                         });
+                       });
   std::vector<Clocks> stretches;
-  for (std::size_t first = 0; first < all.size(); first += kStretch)
-    stretches.push_back(next(job, traffic, all.subspan(first, std::min(kStretch, all.size() - first))));
+  for (const Sums& stretch : sums) stretches.push_back(clocks_of(job, traffic, stretch));
   return stretches;
 }
 
-Clocks Stretches::next(const DrawJob& job, const Traffic& traffic,
-                       std::span<const TriangleWork> triangles) const {
+Stretches::Sums Stretches::sums_of(std::span<const TriangleWork> triangles) const {
+  const auto tiles_per_clock = static_cast<std::uint32_t>(machine_.raster.tiles_per_clock);
+  const auto quads_per_clock = static_cast<std::uint32_t>(machine_.pixel.quads_per_clock);
+  const auto clocks = [](std::uint32_t items, std::uint32_t a_clock) {
+    return items / a_clock + (items % a_clock != 0);
+  };
+  Sums sums;
+  sums.triangles = triangles.size();
+  for (const TriangleWork& triangle : triangles) {
+    sums.vertices += triangle.new_vertices;
+    if (triangle.pieces == 0) continue;
+    sums.pieces += triangle.pieces;
+    ++sums.in_frame;
+    sums.raster_clocks += std::max(
+        {1U, clocks(triangle.tile_count, tiles_per_clock), clocks(triangle.quad_count, quads_per_clock)});
+    sums.quads += triangle.quad_count;
+    sums.quads_passed += triangle.quads_passed;
+  }
+  return sums;
+}
+
+Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums) const {
   const int width = machine_.pixel.quads_per_clock;
-  const Sums sums = sums_of(triangles, static_cast<std::uint32_t>(machine_.raster.tiles_per_clock),
-                            static_cast<std::uint32_t>(width));
   auto vertices = static_cast<double>(sums.vertices), pieces = static_cast<double>(sums.pieces);
   const auto quads = static_cast<double>(sums.quads);
   const double colored = job.draw->state.color_write ? static_cast<double>(sums.quads_passed) : 0;
   Clocks clocks{};
-  clocks[kPrimitive] = static_cast<double>(triangles.size()) * machine_.primitive.clocks_per_triangle +
+  clocks[kPrimitive] = static_cast<double>(sums.triangles) * machine_.primitive.clocks_per_triangle +
                        static_cast<double>(sums.pieces - sums.in_frame) * machine_.primitive.clip_clocks;
   clocks[kRaster] = static_cast<double>(sums.raster_clocks);
   const bool a_quad = reads_a_vertex_a_quad(what_if_);
-  const double indices = a_quad ? 0 : 3 * static_cast<double>(triangles.size());
+  const double indices = a_quad ? 0 : 3 * static_cast<double>(sums.triangles);
   const double read = a_quad ? vertices / 4 : vertices;
   const double fetched = read * bytes_of_vertex(*job.draw, what_if_);
   clocks[kFetch] = std::max(indices / machine_.fetch.indices_per_clock, read);

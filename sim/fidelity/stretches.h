@@ -51,7 +51,15 @@ class Stretches {
   void clear() { traffic_.clear(); }
 
  private:
-  Clocks next(const DrawJob& job, const Traffic& traffic, std::span<const TriangleWork> triangles) const;
+  // Of a stretch.
+  struct Sums {
+    std::size_t triangles = 0;
+    std::uint32_t vertices = 0, pieces = 0, in_frame = 0;  // triangles with a piece
+    std::uint64_t raster_clocks = 0, quads = 0, quads_passed = 0;
+  };
+
+  Sums sums_of(std::span<const TriangleWork> triangles) const;
+  Clocks clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums) const;
   double agp_clocks(double bytes) const;
 
   const Trace& trace_;

@@ -1,5 +1,7 @@
 #include "sim/fidelity/traffic.h"
 
+#include <oneapi/tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <bit>
 #include <span>
@@ -22,52 +24,21 @@ double touch(CacheTags& tags, std::uint32_t line, double fetched, double written
   return bytes;
 }
 
+// look(quad, texel blocks, whether its triangle is sampled, triangle) for each quad of the record.
+template <typename Look>
+void each_quad(const DrawWork& work, Look look) {
+  auto quad = work.quads.begin();
+  const std::uint32_t* block = work.texel_blocks.data();
+  for (std::size_t triangle = 0; triangle < work.triangles.size(); triangle = work.next_recorded(triangle)) {
+    const bool sampled = is_sampled(triangle);
+    for (const auto end = quad + work.triangles[triangle].quad_count; quad != end; ++quad) {
+      look(*quad, std::span(block, quad->texel_block_count), sampled, triangle);
+      block += quad->texel_block_count;
+    }
+  }
+}
+
 }  // namespace
-
-// The caches of a draw, and what they have moved.
-class TrafficCounter::Caches {
- public:
-  Caches(const TrafficCounter& counter, const DrawJob& job)
-      : job_(job),
-        lines_(counter.layout_.depth),
-        uses_depth_(uses_depth(*job.draw)),
-        depth_bytes_(lines_.line_bytes()),
-        color_bytes_(counter.layout_.color.line_bytes()),
-        fill_bytes_(job.draw->source ? counter.machine_.texture.line_bytes
-                                     : counter.machine_.texture.fill_bytes),
-        line_shift_(std::countr_zero(static_cast<unsigned>(counter.machine_.texture.line_bytes / 16))),
-        depth_(counter.machine_.depth.cache_lines, counter.machine_.depth.cache_ways),
-        color_(counter.machine_.blend.cache_lines, counter.machine_.blend.cache_ways),
-        texture_(counter.machine_.texture.cache_lines, counter.machine_.texture.cache_ways) {}
-
-  void look_up(const QuadWork& quad, std::span<const std::uint32_t> blocks, bool cleared, bool writes_depth) {
-    const std::uint32_t line = lines_.line_of(quad);
-    ++quads_;
-    if (uses_depth_)
-      sum_.depth += touch(depth_, line, cleared ? 0 : depth_bytes_, depth_bytes_, writes_depth);
-    if (!is_colored(job_, quad)) return;
-    ++colored_;
-    sum_.color += touch(color_, line, job_.draw->state.blend ? color_bytes_ : 0, color_bytes_, true);
-    sum_.texel_blocks += static_cast<double>(blocks.size());
-    for (const std::uint32_t block : blocks)
-      sum_.texture += touch(texture_, block >> line_shift_, fill_bytes_, 0, false);
-  }
-
-  Traffic of_a_quad() const {
-    const double quads = std::max(1.0, quads_), colored = std::max(1.0, colored_);
-    return {sum_.depth / quads, sum_.color / colored, sum_.texture / colored, sum_.texel_blocks / colored};
-  }
-
- private:
-  const DrawJob& job_;
-  const FrameLines& lines_;
-  bool uses_depth_;
-  double depth_bytes_, color_bytes_, fill_bytes_;
-  int line_shift_;  // of texel blocks
-  CacheTags depth_, color_, texture_;
-  Traffic sum_;
-  double quads_ = 0, colored_ = 0;
-};
 
 TrafficCounter::TrafficCounter(const Machine& machine, const MemoryLayout& layout)
     : machine_(machine), layout_(layout), cleared_(layout.depth.lines(), 0) {}
@@ -76,31 +47,61 @@ void TrafficCounter::clear() {
   std::ranges::fill(cleared_, machine_.depth.fast_clear);
 }
 
+// Depth and what lies behind it share no cache.
 Traffic TrafficCounter::of(const DrawJob& job) {
+  Traffic traffic;
+  tbb::parallel_invoke([&] { count_depth(job, traffic); }, [&] { count_color(job, traffic); });
+  return traffic;
+}
+
+void TrafficCounter::count_depth(const DrawJob& job, Traffic& traffic) {
   const DrawWork& work = *job.work;
-  const bool depth_write = job.draw->state.depth_write;
-  Caches caches(*this, job);
+  const bool reads = uses_depth(*job.draw), writes = job.draw->state.depth_write;
+  const double line_bytes = layout_.depth.line_bytes();
+  CacheTags cache(machine_.depth.cache_lines, machine_.depth.cache_ways);
   auto written = work.tiles_written.begin();
-  auto quad = work.quads.begin();
-  const std::uint32_t* block = work.texel_blocks.data();
   const auto note_written = [&](std::size_t up_to) {
     for (; written != work.tiles_written.end() && written->triangle <= up_to; ++written)
       cleared_[written->tile] = 0;
   };
-  const std::size_t count = work.triangles.size();
-  for (std::size_t triangle = 0; triangle < count; triangle = work.next_recorded(triangle)) {
-    const bool sampled = is_sampled(triangle);
-    note_written(triangle);
-    for (const auto end = quad + work.triangles[triangle].quad_count; quad != end; ++quad) {
-      const bool writes_depth = depth_write && quad->passed != 0;
-      std::uint8_t& cleared = cleared_[layout_.depth.line_of(*quad)];
-      if (sampled) caches.look_up(*quad, {block, quad->texel_block_count}, cleared != 0, writes_depth);
-      if (writes_depth) cleared = 0;
-      block += quad->texel_block_count;
-    }
-  }
-  note_written(count);
-  return caches.of_a_quad();
+  double quads = 0, bytes = 0;
+  each_quad(work,
+            [&](const QuadWork& quad, std::span<const std::uint32_t>, bool sampled, std::size_t triangle) {
+              note_written(triangle);
+              const bool is_written = writes && quad.passed != 0;
+              const std::uint32_t line = layout_.depth.line_of(quad);
+              if (sampled) {
+                ++quads;
+                if (reads)
+                  bytes += touch(cache, line, cleared_[line] != 0 ? 0 : line_bytes, line_bytes, is_written);
+              }
+              if (is_written) cleared_[line] = 0;
+            });
+  note_written(work.triangles.size());
+  traffic.depth = bytes / std::max(1.0, quads);
+}
+
+void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
+  const Draw& draw = *job.draw;
+  if (!draw.state.color_write) return;
+  const double line_bytes = layout_.color.line_bytes(), read_bytes = draw.state.blend ? line_bytes : 0;
+  const double fill_bytes = draw.source ? machine_.texture.line_bytes : machine_.texture.fill_bytes;
+  const int line_shift =
+      std::countr_zero(static_cast<unsigned>(machine_.texture.line_bytes / 16));  // of blocks
+  CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);
+  CacheTags texture(machine_.texture.cache_lines, machine_.texture.cache_ways);
+  double quads = 0;
+  each_quad(*job.work,
+            [&](const QuadWork& quad, std::span<const std::uint32_t> blocks, bool sampled, std::size_t) {
+              if (!sampled || !is_colored(job, quad)) return;
+              ++quads;
+              traffic.color += touch(color, layout_.depth.line_of(quad), read_bytes, line_bytes, true);
+              traffic.texel_blocks += static_cast<double>(blocks.size());
+              for (const std::uint32_t block : blocks)
+                traffic.texture += touch(texture, block >> line_shift, fill_bytes, 0, false);
+            });
+  for (double* of_all : {&traffic.color, &traffic.texture, &traffic.texel_blocks})
+    *of_all /= std::max(1.0, quads);
 }
 
 }  // namespace splatscope::sim

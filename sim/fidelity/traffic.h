@@ -27,7 +27,8 @@ class TrafficCounter {
   void clear();
 
  private:
-  class Caches;
+  void count_depth(const DrawJob& job, Traffic& traffic);
+  void count_color(const DrawJob& job, Traffic& traffic) const;
 
   const Machine& machine_;
   const MemoryLayout& layout_;
