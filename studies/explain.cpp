@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <span>
 #include <sstream>
 
 #include "model/error.h"
@@ -139,6 +142,20 @@ nlohmann::ordered_json hex_of(const Vec4& value) {
   return words;
 }
 
+// Of the draws, as --vertex counts them.
+auto number_of(const Trace& trace, std::uint32_t command) {
+  return std::ranges::count_if(std::span(trace.commands).first(command),
+                               [](const Command& c) { return std::holds_alternative<Draw>(c); });
+}
+
+std::array<std::uint16_t, 3> indices_of(const Trace& trace, const Draw& draw, std::uint32_t triangle) {
+  std::array<std::uint16_t, 3> indices;
+  const std::size_t first = std::size_t{draw.first_index} + 3 * std::size_t{triangle};
+  std::memcpy(&indices, trace.buffers[draw.index_buffer].bytes.data() + first * sizeof(std::uint16_t),
+              sizeof indices);
+  return indices;
+}
+
 const Draw& draw_of(const Trace& trace, std::uint32_t number) {
   std::uint32_t draws = 0;
   for (const Command& command : trace.commands) {
@@ -189,14 +206,17 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
   for (const PixelStep& step : steps) {
     const auto* draw = std::get_if<Draw>(&trace.commands[step.command]);
     if (draw && step.command != command) {
-      out += fmt::format("command {}: draw by {}\n", step.command, trace.programs[draw->vertex_program].name);
+      out += fmt::format("command {}: draw {}, by {}\n", step.command, number_of(trace, step.command),
+                         trace.programs[draw->vertex_program].name);
     }
     command = step.command;
     if (!draw) {
       constexpr const char* kNames[] = {"clear", "", "normalise on the host", "present"};
       out += fmt::format("command {}: {}\n", step.command, kNames[static_cast<int>(step.kind)]);
     } else {
-      out += fmt::format("  triangle {}: depth test {}\n", step.triangle, step.passed ? "passed" : "failed");
+      const auto [a, b, c] = indices_of(trace, *draw, step.triangle);
+      out += fmt::format("  triangle {} of vertices {} {} {}: depth test {}\n", step.triangle, a, b, c,
+                         step.passed ? "passed" : "failed");
       if (!step.passed) continue;
       if (step.writes_color) {
         out += fmt::format("    diffuse {}  texel alpha {:.4f}  source {}\n", text_of(step.diffuse),
