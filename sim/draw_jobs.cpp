@@ -133,6 +133,7 @@ std::vector<UnitLeftOut> units_left_out(const Needs& needs) {
 PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout) {
   PreparedDraws prepared;
   std::map<std::uint32_t, std::size_t> program_numbers;
+  std::map<std::uint32_t, std::uint64_t> pixel_clocks;  // by program
   for (std::size_t command = 0; command < trace.commands.size(); ++command) {
     const Draw* draw = std::get_if<Draw>(&trace.commands[command]);
     if (!draw) continue;
@@ -145,8 +146,11 @@ PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const Me
       prepared.vertex_programs.push_back(issue_slots(load(trace, draw->vertex_program), machine.vertex));
     }
     job.vertex_program = found->second;
-    if (draw->pixel_program)
-      job.pixel_clocks = clocks_per_quad(load(trace, *draw->pixel_program), machine.pixel);
+    if (draw->pixel_program) {
+      const auto [known, is_new] = pixel_clocks.try_emplace(*draw->pixel_program, 0);
+      if (is_new) known->second = clocks_per_quad(load(trace, *draw->pixel_program), machine.pixel);
+      job.pixel_clocks = known->second;
+    }
     job.vertex_address = layout.buffers[draw->vertex_buffer];
     job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
     if (draw->texture) job.texture_address = layout.textures[*draw->texture];
@@ -163,7 +167,7 @@ void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice) {
     throw ModelError("command " + std::to_string(job.command) + " of the trace has no work record");
   job.work = &work;
   check_work(job);
-  count_items(job);
+  if (!work.samples_only) count_items(job);  // the units do; an estimate does not look at these
 }
 
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
