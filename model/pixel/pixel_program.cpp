@@ -68,12 +68,12 @@ bool is_texture(isa::Version version, isa::Opcode opcode) {
 
 }  // namespace
 
-Register& register_of(Registers& registers, isa::RegisterFile file, std::size_t index) {
+Lanes* register_of(Registers& registers, isa::RegisterFile file, std::size_t index) {
   switch (file) {
     case isa::RegisterFile::temporary:
       return registers.temporaries[index];
     case isa::RegisterFile::constant:
-      return registers.constants[index];
+      return registers.constants[index].component;
     case isa::RegisterFile::input:
       return registers.inputs[index];
     case isa::RegisterFile::texture:
@@ -84,12 +84,12 @@ Register& register_of(Registers& registers, isa::RegisterFile file, std::size_t 
 }
 
 Operand read(const isa::Source& source, Registers& registers, Register& copy, int count) {
-  const Register& from = register_of(registers, source.file, source.index);
+  const Lanes* const from = register_of(registers, source.file, source.index);
   const bool plain = source.modifier == isa::SourceModifier::none && !source.negate;
   const Affine affine = affine_of(source);
   Operand operand;
   for (std::size_t lane = 0; lane < 4; ++lane) {
-    const Lanes& values = from.component[source.swizzle[lane]];
+    const Lanes& values = from[source.swizzle[lane]];
     operand.component[lane] = plain ? values : copy.component[lane];
     if (!plain) scale_lanes(values, affine.scale, affine.offset, copy.component[lane], count);
   }
@@ -107,7 +107,8 @@ struct PixelProgram::Decoded {
   };
   std::vector<Step> steps;
   std::array<std::optional<Vec4>, isa::kPixelConstants> defined;
-  unsigned constants = 0, temporaries = 0, inputs = 0, textures = 0;  // used: bit n
+  unsigned constants = 0, inputs = 0, textures = 0;  // used: bit n
+  unsigned textures_written = 0;                     // otherwise than by being sampled
   unsigned stages = 0;
   bool writes_depth = false;
   bool samples_ahead = true;
@@ -120,24 +121,23 @@ struct PixelProgram::Decoded {
   void run(std::span<const Vec4> values, FragmentBatch& batch, int count, const Sampler& sampler,
            const BumpStages& bump, bool sampled_ahead) const;
   void use(isa::RegisterFile file, std::size_t index);
-  void prepare(std::span<const Vec4> values, const FragmentBatch& batch, int count,
+  void prepare(std::span<const Vec4> values, FragmentBatch& batch, int count, bool sampled_ahead,
                Registers& registers) const;
 };
 
 void PixelProgram::Decoded::use(isa::RegisterFile file, std::size_t index) {
   const unsigned bit = 1u << index;
   switch (file) {
-    case isa::RegisterFile::temporary:
-      temporaries |= bit;
-      break;
     case isa::RegisterFile::constant:
       constants |= bit;
       break;
     case isa::RegisterFile::input:
       inputs |= bit;
       break;
-    default:
+    case isa::RegisterFile::texture:
       textures |= bit;
+      break;
+    default:
       break;
   }
 }
@@ -148,6 +148,8 @@ void PixelProgram::Decoded::append(const isa::Instruction& instruction, std::siz
   steps.push_back({instruction, texture, place});
   if (!texture) decide_in_place(instruction.coissue ? 2 : 1);
   use(instruction.destination.file, instruction.destination.index);
+  if (instruction.destination.file == isa::RegisterFile::texture && instruction.opcode != tex)
+    textures_written |= 1u << instruction.destination.index;
   for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
     use(instruction.sources[i].file, instruction.sources[i].index);
   if (!texture) return;
@@ -171,24 +173,27 @@ void PixelProgram::Decoded::decide_in_place(std::size_t issued) {
   for (Step& step : last) step.in_place = !conflict;
 }
 
-void PixelProgram::Decoded::prepare(std::span<const Vec4> values, const FragmentBatch& batch, int count,
-                                    Registers& registers) const {
-  for (std::size_t component = 0; component < 4; ++component) {
-    for (std::size_t i = 0; i < defined.size(); ++i) {
-      if (!(constants & (1u << i))) continue;
-      const Vec4 value = defined[i] ? *defined[i] : i < values.size() ? values[i] : Vec4{};
-      std::fill_n(registers.constants[i].component[component], count,
-                  in_range(value[component], -1.0f, 1.0f));
-    }
-    if (inputs & 1u)
-      clamp_lanes(batch.v0[component], 0.0f, 1.0f, registers.inputs[0].component[component], count);
-    if (inputs & 2u)
-      clamp_lanes(batch.v1[component], 0.0f, 1.0f, registers.inputs[1].component[component], count);
-    for (std::size_t i = 0; i < kStages; ++i) {
-      if (temporaries & (1u << i)) std::fill_n(registers.temporaries[i].component[component], count, 0.0f);
-      if (textures & (1u << i))
-        std::copy_n(batch.t[i][component], count, registers.textures[i].component[component]);
-    }
+void PixelProgram::Decoded::prepare(std::span<const Vec4> values, FragmentBatch& batch, int count,
+                                    bool sampled_ahead, Registers& registers) const {
+  registers.inputs = {batch.v0, batch.v1};
+  for (std::size_t i = 0; i < registers.inputs.size(); ++i) {
+    if (sampled_ahead || (inputs & 1u << i) == 0) continue;  // sampled ahead, colours are in their range
+    Lanes* const own = registers.own_inputs[i].component;
+    for (std::size_t c = 0; c < 4; ++c) clamp_lanes(registers.inputs[i][c], 0.0f, 1.0f, own[c], count);
+    registers.inputs[i] = own;
+  }
+  for (std::size_t i = 0; i < defined.size(); ++i) {
+    if ((constants & 1u << i) == 0) continue;
+    const Vec4 value = defined[i] ? *defined[i] : i < values.size() ? values[i] : Vec4{};
+    for (std::size_t c = 0; c < 4; ++c)
+      std::fill_n(registers.constants[i].component[c], count, in_range(value[c], -1.0f, 1.0f));
+  }
+  for (std::size_t i = 0; i < kStages; ++i) {
+    registers.temporaries[i] = i == 0 ? batch.r0 : registers.own_temporaries[i].component;
+    const bool own = !sampled_ahead || (textures_written & 1u << i) != 0;
+    registers.textures[i] = own ? registers.own_textures[i].component : batch.t[i];
+    if (!own || (textures & 1u << i) == 0) continue;
+    for (std::size_t c = 0; c < 4; ++c) std::copy_n(batch.t[i][c], count, registers.textures[i][c]);
   }
 }
 
@@ -196,7 +201,6 @@ PixelProgram::PixelProgram(const isa::Program& program, CombinerFormat format)
     : decoded_(std::make_unique<Decoded>()) {
   decoded_->version = program.version;
   decoded_->format = result_format(program.version, format);
-  decoded_->temporaries = 1;  // r0 is the result
   for (const isa::Definition& definition : program.definitions)
     decoded_->defined.at(definition.index) = definition.values;
   decoded_->instructions = program.instructions.size();
@@ -257,16 +261,16 @@ std::size_t PixelProgram::Decoded::execute(std::size_t at, Registers& registers,
                               context.bump[destination.index].matrix,
                               scale_of(destination),
                               {low, high, format.steps}};
-    Register& to = register_of(registers, destination.file, destination.index);
-    compute_lanes(operation, context.count, steps[at + k].in_place ? to : results[k]);
+    Lanes* const to = register_of(registers, destination.file, destination.index);
+    compute_lanes(operation, context.count, steps[at + k].in_place ? to : results[k].component);
   }
   for (std::size_t k = 0; k < issued; ++k) {
     if (steps[at + k].in_place) continue;
     const isa::Destination& destination = steps[at + k].instruction.destination;
-    Register& to = register_of(registers, destination.file, destination.index);
+    Lanes* const to = register_of(registers, destination.file, destination.index);
     for (std::size_t component = 0; component < 4; ++component)
       if (destination.mask & (1u << component))
-        std::copy_n(results[k].component[component], context.count, to.component[component]);
+        std::copy_n(results[k].component[component], context.count, to[component]);
   }
   return at + issued;
 }
@@ -279,26 +283,25 @@ void PixelProgram::run(std::span<const Vec4> constants, FragmentBatch& batch, in
 void PixelProgram::Decoded::run(std::span<const Vec4> values, FragmentBatch& batch, int count,
                                 const Sampler& sampler, const BumpStages& bump, bool sampled_ahead) const {
   Registers registers;
-  prepare(values, batch, count, registers);
+  prepare(values, batch, count, sampled_ahead, registers);
   batch.killed.reset();
   const Context context{version, batch, count, sampler, bump, sampled_ahead};
   for (std::size_t at = 0; at < steps.size();) at = execute(at, registers, context);
-  for (std::size_t component = 0; component < 4; ++component)
-    std::copy_n(registers.temporaries[0].component[component], count, batch.r0[component]);
 }
 
 std::vector<FragmentState> PixelProgram::trace(std::span<const Vec4> constants, FragmentBatch& batch,
                                                const Sampler& sampler, const BumpStages& bump) const {
   const auto registers = std::make_unique<Registers>();
-  decoded_->prepare(constants, batch, 1, *registers);
+  decoded_->prepare(constants, batch, 1, false, *registers);
+  for (Lanes& component : batch.r0) component[0] = 0;  // the others are
   batch.killed.reset();
   const Context context{decoded_->version, batch, 1, sampler, bump};
   const auto state = [&] {
     FragmentState result;
     for (std::size_t i = 0; i < kStages; ++i)
       for (std::size_t c = 0; c < 4; ++c) {
-        result.temporaries[i][c] = registers->temporaries[i].component[c][0];
-        result.textures[i][c] = registers->textures[i].component[c][0];
+        result.temporaries[i][c] = registers->temporaries[i][c][0];
+        result.textures[i][c] = registers->textures[i][c][0];
       }
     return result;
   };
@@ -309,7 +312,6 @@ std::vector<FragmentState> PixelProgram::trace(std::span<const Vec4> constants, 
       at = decoded_->execute(at, *registers, context);
     states.push_back(state());
   }
-  for (std::size_t c = 0; c < 4; ++c) batch.r0[c][0] = registers->temporaries[0].component[c][0];
   return states;
 }
 

@@ -22,7 +22,7 @@ using Lanes = float[kLaneStride];
 // Registers of a batch of fragments, structure of arrays: [component r g b a][fragment].
 struct FragmentBatch {
   alignas(64) Lanes v0[4];          // interpolated diffuse, in [0, 1]
-  alignas(64) Lanes v1[4];          // interpolated specular
+  alignas(64) Lanes v1[4];          // interpolated specular, the same
   alignas(64) Lanes t[kStages][4];  // texture coordinates
   alignas(64) Lanes r0[4];          // result
   alignas(64) Lanes depth;          // result of texdepth and texm3x2depth, where writes_depth()
@@ -51,6 +51,7 @@ struct FragmentState {
 // ps_1_X"). NaN counts as 0 there, so r0 never holds one.
 class PixelProgram {
  public:
+  // `program` is valid (isa::validate): it reads no temporary before it writes it, and writes all of r0.
   explicit PixelProgram(const isa::Program& program, CombinerFormat format = CombinerFormat::float32);
   ~PixelProgram();
   PixelProgram(PixelProgram&&) noexcept;
@@ -64,10 +65,10 @@ class PixelProgram {
   bool samples_ahead() const;
 
   // Where samples_ahead(): the caller has replaced t[n] by the texel of stage n for every stage in
-  // texture_stages().
+  // texture_stages(), and v0 and v1 are in their range.
   void run(std::span<const Vec4> constants, FragmentBatch& batch, int count) const;
 
-  // Any program, which samples as it runs.
+  // Any program, which samples as it runs; v0 and v1 are brought into their range.
   void run(std::span<const Vec4> constants, FragmentBatch& batch, int count, const Sampler& sampler,
            const BumpStages& bump = {}) const;
 

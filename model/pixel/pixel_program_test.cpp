@@ -26,6 +26,15 @@ TEST(PixelProgram, TexelAlphaTimesDiffuse) {
   EXPECT_EQ(PixelProgram(isa::load("ps_1_1\ntex t0\nmov r0, t0.a\n", "test")).texture_stages(), 1u);
 }
 
+TEST(PixelProgram, LeavesItsInputsAsTheyAre) {
+  const PixelProgram program(isa::load("ps_1_1\ntex t0\nmul t0, t0, v0\nmov r0, t0\n", "test"));
+  const auto batch = std::make_unique<FragmentBatch>();
+  for (std::size_t c = 0; c < 4; ++c) batch->v0[c][0] = batch->t[0][c][0] = 0.5f;
+  program.run({}, *batch, 1);
+  program.run({}, *batch, 1);
+  EXPECT_EQ(0.25f, batch->r0[0][0]);
+}
+
 TEST(PixelProgram, RegistersKeepToTheirRange) {
   EXPECT_EQ(run("ps_1_1\nmov r0, c0\n"), (Vec4{1, -1, 1, 0.5f}));
   EXPECT_EQ(run("ps_1_1\nadd_x2 r0, v0, -c0\n"), (Vec4{-1, 1, 0, 0.5f}));

@@ -27,17 +27,21 @@ struct alignas(64) Register {
   Lanes component[4];
 };
 
+// Four components each; those that a run need not keep apart are the batch's own.
 struct Registers {
-  Register temporaries[kStages];
+  std::array<Lanes*, kStages> temporaries;  // r0 is the batch's
+  std::array<Lanes*, 2> inputs;
+  std::array<Lanes*, kStages> textures;  // t#: up to ps_1_3 what texture instructions made of them, in ps_1_4
+                                         // the coordinates
   Register constants[8];
-  Register inputs[2];
-  Register textures[kStages];  // t#: up to ps_1_3 what texture instructions made of them, in ps_1_4 the
-                               // coordinates
-  Lanes rows[3];               // of texm3x2* and texm3x3*
-  int row = 0;                 // of them, how many there are
+  Lanes rows[3];  // of texm3x2* and texm3x3*
+  int row = 0;    // of them, how many there are
+
+  Register own_temporaries[kStages], own_inputs[2], own_textures[kStages];
 };
 
-Register& register_of(Registers& registers, isa::RegisterFile file, std::size_t index);
+// Its four components.
+Lanes* register_of(Registers& registers, isa::RegisterFile file, std::size_t index);
 
 // What a run has besides its registers.
 struct Context {
@@ -74,7 +78,7 @@ struct Operation {
 };
 
 // The result as the register holds it, in the components of the mask. `result` is none of the sources.
-void compute_lanes(const Operation& operation, int count, Register& result);
+void compute_lanes(const Operation& operation, int count, Lanes* result);
 
 // One texture address instruction (texture_instructions.cpp).
 void run_texture_instruction(const isa::Instruction& instruction, Registers& registers,

@@ -33,12 +33,12 @@ HWY_INLINE void each_lane(int count, Function function) {
 
 // function(component, lane) for the components that are written, as the register holds it.
 template <typename Function>
-HWY_INLINE void each(const Operation& operation, Register& result, int count, Function function) {
+HWY_INLINE void each(const Operation& operation, Lanes* result, int count, Function function) {
   const V scale = set(operation.scale), low = set(operation.format.low), high = set(operation.format.high);
   const V whole = set(255.0f);
   for (std::size_t component = 0; component < 4; ++component) {
     if (!(operation.mask & (1u << component))) continue;
-    float* out = result.component[component];
+    float* out = result[component];
     each_lane(count, [&](std::size_t i) HWY_ATTR {
       V value = in_range(hn::Mul(function(component, i), scale), low, high);
       if (operation.format.steps) value = hn::Div(hn::Round(hn::Mul(value, whole)), whole);
@@ -54,7 +54,7 @@ struct Reader {
   }
 };
 
-void compute(const Operation& operation, int count, Register& result) {
+void compute(const Operation& operation, int count, Lanes* result) {
   const Reader a{operation.sources[0]}, b{operation.sources[1]}, c{operation.sources[2]};
   using std::size_t;
   const auto dot = [&](size_t terms, size_t i) HWY_ATTR {
@@ -125,7 +125,7 @@ HWY_EXPORT(compute);
 HWY_EXPORT(clamp);
 HWY_EXPORT(scale);
 
-void compute_lanes(const Operation& operation, int count, Register& result) {
+void compute_lanes(const Operation& operation, int count, Lanes* result) {
   HWY_DYNAMIC_DISPATCH(compute)(operation, count, result);
 }
 void clamp_lanes(const float* from, float low, float high, float* to, int count) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "model/error.h"
 #include "model/isa/opcode.h"
@@ -12,7 +13,8 @@ namespace {
 using enum isa::Opcode;
 
 void sample(int stage, const Register& coordinates, Registers& registers, const Context& context) {
-  context.sampler(stage, coordinates.component, registers.textures[stage].component, context.count);
+  context.sampler(stage, coordinates.component, registers.textures[static_cast<std::size_t>(stage)],
+                  context.count);
 }
 
 void kill_negative(const Lanes* components, const Context& context) {
@@ -42,7 +44,7 @@ Register bumped_coordinates(std::size_t stage, const Operand& source, const Cont
 void scale_by_luminance(std::size_t stage, const Operand& source, Registers& registers,
                         const Context& context) {
   const BumpStage& bump = context.bump[stage];
-  for (Lanes& component : registers.textures[stage].component)
+  for (Lanes& component : std::span(registers.textures[stage], 4))
     for (int i = 0; i < context.count; ++i)
       component[i] *= source.component[2][i] * bump.luminance_scale + bump.luminance_offset;
 }
@@ -97,7 +99,8 @@ void last_row(const isa::Instruction& instruction, Registers& registers, const C
       return write_depth(rows.component[0], rows.component[1], context);
     case texm3x3:
       std::fill_n(rows.component[3], context.count, 1.0f);
-      registers.textures[stage] = rows;
+      for (std::size_t k = 0; k < 4; ++k)
+        std::copy_n(rows.component[k], context.count, registers.textures[stage][k]);
       return;
     case texm3x3spec: {
       const auto& eye = registers.constants[instruction.sources[1].index].component;
@@ -114,7 +117,7 @@ void last_row(const isa::Instruction& instruction, Registers& registers, const C
 void run_to_1_3(const isa::Instruction& instruction, Registers& registers, const Context& context) {
   const std::size_t stage = instruction.destination.index;
   const int count = context.count;
-  auto& result = registers.textures[stage].component;
+  Lanes* const result = registers.textures[stage];
   const auto& coordinates = context.batch.t[stage];
   Register copy;
   const Operand source =
@@ -145,7 +148,7 @@ void run_to_1_3(const isa::Instruction& instruction, Registers& registers, const
       Register product = take_rows(registers, count);  // (u, 0, 0)
       if (instruction.opcode == texdp3tex)
         return sample(static_cast<int>(stage), product, registers, context);
-      for (Lanes& component : result) std::copy_n(product.component[0], count, component);
+      for (Lanes& component : std::span(result, 4)) std::copy_n(product.component[0], count, component);
       return;
     }
     case texm3x2pad:
@@ -159,14 +162,13 @@ void run_to_1_3(const isa::Instruction& instruction, Registers& registers, const
 
 // The coordinates of texld and texcrd: selected, and divided by the third or fourth component.
 Register coordinates_1_4(const isa::Source& source, Registers& registers, int count) {
-  const Register& from = register_of(registers, source.file, source.index);
+  const Lanes* const from = register_of(registers, source.file, source.index);
   Register result{};
-  for (std::size_t k = 0; k < 3; ++k)
-    std::copy_n(from.component[source.swizzle[k]], count, result.component[k]);
+  for (std::size_t k = 0; k < 3; ++k) std::copy_n(from[source.swizzle[k]], count, result.component[k]);
   const bool by_third = source.modifier == isa::SourceModifier::dz,
              by_fourth = source.modifier == isa::SourceModifier::dw;
   if (!by_third && !by_fourth) return result;
-  const Lanes& divisor = from.component[by_third ? 2 : 3];
+  const Lanes& divisor = from[by_third ? 2 : 3];
   for (std::size_t k = 0; k < 2; ++k)
     for (int i = 0; i < count; ++i) result.component[k][i] /= divisor[i];
   std::fill_n(result.component[2], count, 0.0f);
@@ -175,7 +177,7 @@ Register coordinates_1_4(const isa::Source& source, Registers& registers, int co
 
 void run_1_4(const isa::Instruction& instruction, Registers& registers, const Context& context) {
   const isa::Destination& destination = instruction.destination;
-  auto& result = register_of(registers, destination.file, destination.index).component;
+  Lanes* const result = register_of(registers, destination.file, destination.index);
   switch (instruction.opcode) {
     case texkill:
       return kill_negative(result, context);
@@ -184,7 +186,7 @@ void run_1_4(const isa::Instruction& instruction, Registers& registers, const Co
     case texld: {
       const Register coordinates = coordinates_1_4(instruction.sources[0], registers, context.count);
       context.sampler(destination.index, coordinates.component, result, context.count);
-      for (Lanes& component : result) clamp_lanes(component, -8, 8, component, context.count);
+      for (Lanes& component : std::span(result, 4)) clamp_lanes(component, -8, 8, component, context.count);
       return;
     }
     case texcrd: {
