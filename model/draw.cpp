@@ -221,7 +221,7 @@ class DrawStages {
   void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Take take) {
     if (!setup.covers) return;
     const bool noted = notes_quads();
-    work.tile_count += raster::tiles_touched(setup);
+    if (record_ != Record::nothing) work.tile_count += raster::tiles_touched(setup);
     for (int y = setup.top & ~1; y < setup.bottom; y += raster::kWindow) {
       const raster::BandCounts counts = raster::rasterize_band(setup, depth_, y, windows_);
       counters_.fragments += counts.covered;
