@@ -135,6 +135,12 @@ std::int64_t GeometryBatch::pixels_at_most() const {
   return pixels;
 }
 
+std::array<std::uint16_t, 3> indices_at(const Buffer& indices, std::size_t first) {
+  std::array<std::uint16_t, 3> three;
+  std::memcpy(&three, indices.bytes.data() + first * sizeof(std::uint16_t), sizeof three);
+  return three;
+}
+
 Indices::Indices(int cache_entries)
     : cache_entries_(static_cast<std::uint32_t>(cache_entries)), known_(kIndices) {}
 
@@ -145,13 +151,6 @@ void Indices::begin(const DrawBindings& bindings) {
   if (shaded_ < kManyNumbers && batch_ < kManyNumbers) return;
   std::ranges::fill(known_, Known{});
   batch_ = shaded_ = 0;
-}
-
-std::array<std::uint16_t, kCorners> Indices::indices_of(std::uint32_t position) const {
-  std::array<std::uint16_t, kCorners> indices;
-  std::memcpy(&indices, bindings_->indices.bytes.data() + std::size_t{position} * sizeof(std::uint16_t),
-              sizeof indices);
-  return indices;
 }
 
 std::uint16_t Indices::place_of(std::uint32_t index, Known& known, GeometryBatch& batch,
@@ -176,7 +175,7 @@ bool Indices::fill(GeometryBatch& batch) {
   batch_ += GeometryBatch::kVertices;
   const Draw& draw = bindings_->draw;
   for (; position_ + kCorners <= draw.index_count; position_ += kCorners) {
-    const auto index = indices_of(draw.first_index + position_);
+    const auto index = indices_at(bindings_->indices, draw.first_index + position_);
     Known* const known[kCorners] = {&known_[index[0]], &known_[index[1]], &known_[index[2]]};
     std::size_t size = batch.vertices.size();  // with this triangle, at most
     for (const Known* corner : known) size += corner->batch < batch_;

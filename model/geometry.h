@@ -76,6 +76,9 @@ class GeometryBatch {
   std::vector<std::array<std::uint32_t, 3>> piece_corners_;  // their places in `attributes_`
 };
 
+// Three indices of a buffer, from number `first`: those of a triangle of a list. They lie within it.
+std::array<std::uint16_t, 3> indices_at(const Buffer& indices, std::size_t first);
+
 // Walks the indices of a draw with the post-transform FIFO, batch by batch; one draw after the other.
 class Indices {
  public:
@@ -90,7 +93,6 @@ class Indices {
     std::uint32_t inserted = 0;  // into the FIFO: 0 never, else 1 + its place in the order of shading
     std::uint32_t batch = 0;     // the last one it was in, times kVertices, and its place there
   };
-  std::array<std::uint16_t, 3> indices_of(std::uint32_t position) const;  // of a triangle
   std::uint16_t place_of(std::uint32_t index, Known& known, GeometryBatch& batch, std::uint8_t& new_vertices);
 
   const DrawBindings* bindings_ = nullptr;

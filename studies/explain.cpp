@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
-#include <span>
 #include <sstream>
 
 #include "model/error.h"
+#include "model/geometry.h"
 #include "model/output/blend_factor.h"
 #include "model/render.h"
 #include "model/vertex/vertex_fetch.h"
@@ -142,20 +140,6 @@ nlohmann::ordered_json hex_of(const Vec4& value) {
   return words;
 }
 
-// Of the draws, as --vertex counts them.
-auto number_of(const Trace& trace, std::uint32_t command) {
-  return std::ranges::count_if(std::span(trace.commands).first(command),
-                               [](const Command& c) { return std::holds_alternative<Draw>(c); });
-}
-
-std::array<std::uint16_t, 3> indices_of(const Trace& trace, const Draw& draw, std::uint32_t triangle) {
-  std::array<std::uint16_t, 3> indices;
-  const std::size_t first = std::size_t{draw.first_index} + 3 * std::size_t{triangle};
-  std::memcpy(&indices, trace.buffers[draw.index_buffer].bytes.data() + first * sizeof(std::uint16_t),
-              sizeof indices);
-  return indices;
-}
-
 const Draw& draw_of(const Trace& trace, std::uint32_t number) {
   std::uint32_t draws = 0;
   for (const Command& command : trace.commands) {
@@ -178,12 +162,13 @@ std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& fo
   options.formats = formats;
   const std::vector<DrawWork> work = render(trace, options).work;
   PixelHistory history(trace, formats, x, y);
-  std::size_t draws = 0;
+  std::uint32_t draws = 0;
   for (std::uint32_t i = 0; i < trace.commands.size(); ++i) {
     const Command& command = trace.commands[i];
     PixelStep step;
     step.command = i;
     if (const auto* draw = std::get_if<Draw>(&command)) {
+      step.draw = draws;
       for_triangles_at(work[draws++], x, y, [&](std::uint32_t triangle, bool passed) {
         step.triangle = triangle;
         step.passed = passed;
@@ -206,7 +191,7 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
   for (const PixelStep& step : steps) {
     const auto* draw = std::get_if<Draw>(&trace.commands[step.command]);
     if (draw && step.command != command) {
-      out += fmt::format("command {}: draw {}, by {}\n", step.command, number_of(trace, step.command),
+      out += fmt::format("command {}: draw {}, by {}\n", step.command, step.draw,
                          trace.programs[draw->vertex_program].name);
     }
     command = step.command;
@@ -214,7 +199,8 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
       constexpr const char* kNames[] = {"clear", "", "normalise on the host", "present"};
       out += fmt::format("command {}: {}\n", step.command, kNames[static_cast<int>(step.kind)]);
     } else {
-      const auto [a, b, c] = indices_of(trace, *draw, step.triangle);
+      const auto [a, b, c] = indices_at(trace.buffers[draw->index_buffer],
+                                        std::size_t{draw->first_index} + 3 * std::size_t{step.triangle});
       out += fmt::format("  triangle {} of vertices {} {} {}: depth test {}\n", step.triangle, a, b, c,
                          step.passed ? "passed" : "failed");
       if (!step.passed) continue;

@@ -19,6 +19,7 @@ struct PixelStep {
   Kind kind = Kind::triangle;
   std::uint32_t command = 0;  // its place in the trace
   // Of a triangle:
+  std::uint32_t draw = 0;      // its number among the draws of the trace
   std::uint32_t triangle = 0;  // of the draw, as indexed
   bool passed = false;         // the depth test
   bool writes_color = false;
