@@ -7,10 +7,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
-#include <type_traits>
 
 #include "model/number/simd_integer-inl.h"
+#include "model/number/simd_mask-inl.h"
 #include "model/output/output.h"
 #include "model/raster/raster.h"
 
@@ -69,23 +68,8 @@ using F = hn::RebindToFloat<I>;
 using VI = hn::Vec<I>;
 using VF = hn::Vec<F>;
 
-// A mask as a number, lane n in bit n, and back: as one word, since bytes would have to be put together.
-static_assert(std::endian::native == std::endian::little);
-using Bits = std::conditional_t<(hn::MaxLanes(I{}) > 8), std::uint16_t, std::uint8_t>;
-template <class D>
-HWY_INLINE std::uint64_t bits_of(D, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(D{}, mask, bytes);
-  Bits bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  return bits;
-}
-HWY_INLINE hn::Mask<U> mask_of(std::uint64_t lanes) {
-  const auto bits = static_cast<Bits>(lanes);
-  std::uint8_t bytes[8] = {};
-  std::memcpy(bytes, &bits, sizeof bits);
-  return hn::LoadMaskBits(U{}, bytes);
-}
+using splatscope::HWY_NAMESPACE::bits_of;
+using splatscope::HWY_NAMESPACE::mask_of;
 
 // The pixels of a window inside of all edges.
 HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
@@ -114,13 +98,37 @@ HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
   return mask;
 }
 
-// Window z in [0, 1] as the depth buffer stores it: output::quantize_depth. floor(z (2^n - 1) + 1/2) is that
-// of 2^n z - z + 1/2, of which 2^n z is exact: where its fraction f and z cross a half, it is off by one. f -
-// 1/2 is exact where f reaches 1/2, and f + 1/2 where z does.
-HWY_INLINE hn::Vec<U> quantize(VF z, DepthFormat format) {
-  const VF half = hn::Set(F{}, 0.5f);
-  if (format == DepthFormat::float32) return hn::BitCast(U{}, z);
-  const VF scaled = hn::Mul(z, hn::Set(F{}, format == DepthFormat::z16 ? 0x1p16f : 0x1p24f));
+// a > b ? a : b, and a < b ? a : b: b where a is no number, as x86 has it.
+#if HWY_ARCH_X86_64 && HWY_TARGET != HWY_EMU128
+HWY_INLINE VF greater(VF a, VF b) {
+  return hn::Max(a, b);
+}
+HWY_INLINE VF lesser(VF a, VF b) {
+  return hn::Min(a, b);
+}
+#else
+HWY_INLINE VF greater(VF a, VF b) {
+  return hn::IfThenElse(hn::Gt(a, b), a, b);
+}
+HWY_INLINE VF lesser(VF a, VF b) {
+  return hn::IfThenElse(hn::Lt(a, b), a, b);
+}
+#endif
+
+// Window z in [0, 1] as the depth buffer stores it: output::quantize_depth. `levels`: 2^n of a format of n
+// bits, which floor(z (2^n - 1) + 1/2) goes to.
+#if HWY_TARGET <= HWY_AVX3
+// In one step, rounded toward zero: a float under 2^24 keeps the floor of what it comes from.
+HWY_INLINE hn::Vec<U> quantize(VF z, VF levels) {
+  const VF steps = hn::Sub(levels, hn::Set(F{}, 1.0f)), half = hn::Set(F{}, 0.5f);
+  const VF sum{_mm512_fmadd_round_ps(z.raw, steps.raw, half.raw, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)};
+  return hn::BitCast(U{}, splatscope::HWY_NAMESPACE::integer(sum));
+}
+#else
+// The floor of 2^n z - z + 1/2, of which 2^n z is exact: where its fraction f and z cross a half, it is off
+// by one. f - 1/2 is exact where f reaches 1/2, and f + 1/2 where z does.
+HWY_INLINE hn::Vec<U> quantize(VF z, VF levels) {
+  const VF scaled = hn::Mul(z, levels), half = hn::Set(F{}, 0.5f);
   const VI whole = splatscope::HWY_NAMESPACE::integer(scaled);
   const VF fraction = hn::Sub(scaled, hn::ConvertTo(F{}, whole));
   const auto minus_one = [](auto mask) HWY_ATTR { return hn::BitCast(I{}, hn::VecFromMask(F{}, mask)); };
@@ -128,6 +136,7 @@ HWY_INLINE hn::Vec<U> quantize(VF z, DepthFormat format) {
   const VI less = minus_one(hn::Lt(hn::Add(fraction, half), z));
   return hn::BitCast(U{}, hn::Add(hn::Sub(whole, more), less));
 }
+#endif
 
 // Places of pairs of pixels: of two rows that stand one after the other, quad by quad; and back.
 struct Order {
@@ -168,23 +177,33 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
   // In [0, 1] like what is stored; the lesser first, so that zero has no sign.
   const VF nearest = hn::Set(F{}, setup.nearest > 0 ? std::min(setup.nearest, 1.0f) : 0.0f),
            furthest = hn::Set(F{}, setup.furthest > 0 ? std::min(setup.furthest, 1.0f) : 0.0f);
-  const VI from_left = hn::Set(I{}, window.x - setup.left);
+  // Not read again behind every store.
+  const bool tests = target.test, writes = target.write, whole = target.format != DepthFormat::float32;
+  const VF levels = hn::Set(F{}, target.format == DepthFormat::z16 ? 0x1p16f : 0x1p24f);
+  // The part of x, of which blocks have kParts.
+  constexpr std::size_t kParts = kRowLanes / kLanes;
+  VF along_x[kParts], y[kParts];
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const auto lanes = [](const std::int32_t* from, int offset) HWY_ATTR {
+      return hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, from), hn::Set(I{}, offset)));
+    };
+    along_x[part] = hn::Mul(dx, lanes(Window::kLaneX + part * kLanes, window.x - setup.left));
+    y[part] = lanes(Window::kLaneY + part * kLanes, window.y - setup.top);
+  }
   std::uint64_t passed = 0;
   for (std::size_t block = 0; block < kBlocks; ++block) {
     const std::size_t bit = block * kLanes, lane = bit % kRowLanes;
     const std::uint64_t covered = window.covered >> bit & (~std::uint64_t{0} >> (64 - kLanes));
     if (covered == 0) continue;
-    const int from_top = window.y + static_cast<int>(bit / kRowLanes) * 2 - setup.top;
-    const VF x = hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, Window::kLaneX + lane), from_left));
-    const VF y = hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, Window::kLaneY + lane), hn::Set(I{}, from_top)));
-    const VF z = hn::Add(origin, hn::Add(hn::Mul(dx, x), hn::Mul(dy, y)));
-    const VF behind = hn::IfThenElse(hn::Gt(z, nearest), z, nearest);  // also for NaN
-    const VF within = hn::IfThenElse(hn::Lt(behind, furthest), behind, furthest);
-    const auto depth = quantize(within, target.format);
+    const VF row = hn::Set(F{}, static_cast<float>(bit / kRowLanes * 2));
+    const VF along_y = hn::Mul(dy, hn::Add(y[lane / kLanes], row));
+    const VF z = hn::Add(origin, hn::Add(along_x[lane / kLanes], along_y));
+    const VF within = lesser(greater(z, nearest), furthest);
+    const auto depth = whole ? quantize(within, levels) : hn::BitCast(U{}, within);
     const auto quads = hn::TableLookupLanes(old[block], to_quads);
-    auto pass = mask_of(covered);
-    if (target.test) pass = hn::AndNot(hn::Gt(depth, quads), pass);
-    if (target.write) {
+    auto pass = mask_of(U{}, covered);
+    if (tests) pass = hn::AndNot(hn::Gt(depth, quads), pass);
+    if (writes) {
       const auto rows = hn::TableLookupLanes(hn::IfThenElse(pass, depth, quads), to_rows);
       hn::StoreU(hn::LowerHalf(half, rows), half, place_of(block));
       hn::StoreU(hn::UpperHalf(half, rows), half, place_of(block) + stride);
