@@ -6,6 +6,9 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <span>
+
 #include "model/number/nv20.h"
 #include "model/number/simd_integer-inl.h"
 #include "model/vertex/steps.h"
@@ -185,22 +188,25 @@ HWY_INLINE V reciprocal_sqrt(V a) {
   return hn::IfThenElse(hn::Eq(exponent, hn::Zero(U{})), set(0x7f800000), result);
 }
 
-// Reads of one operand for the vertices from `i`.
+// Reads of one operand for the vertices from `i`; where nothing is negated there is nothing to do but that.
+template <bool kNegates>
 struct Reader {
   explicit Reader(const Operand& operand) : operand(operand), sign(set(operand.sign)) {}
   V operator()(std::size_t component, std::size_t i) const {
     const auto* bits =
         reinterpret_cast<const std::uint32_t*>(operand.component[component] + i * operand.stride);
-    return hn::Xor(hn::Load(U{}, bits), sign);
+    const V value = hn::Load(U{}, bits);
+    return kNegates ? hn::Xor(value, sign) : value;
   }
   VF number(std::size_t component, std::size_t i) const { return as_float((*this)(component, i)); }
   const Operand& operand;
   V sign;
 };
 
+template <bool kNegates>
 struct Sources {
   explicit Sources(const Call& call) : a(call.sources[0]), b(call.sources[1]), c(call.sources[2]) {}
-  Reader a, b, c;
+  Reader<kNegates> a, b, c;
 };
 
 bool holds_special(const float* values, std::size_t count) {
@@ -213,7 +219,7 @@ bool holds_special(const float* values, std::size_t count) {
 bool special_lanes(const Call& call, std::size_t i) {
   for (std::size_t k = 0; k < call.source_count; ++k)
     for (std::size_t c = 0; c < kComponents; ++c)
-      if (any_special(Reader(call.sources[k])(c, i))) return true;
+      if (any_special(Reader<false>(call.sources[k])(c, i))) return true;
   return false;
 }
 
@@ -301,17 +307,18 @@ HWY_INLINE void one_reciprocal(const Call& call, std::size_t count, Function fun
   *call.special |= special;
 }
 
-template <std::size_t kTerms>
+template <std::size_t kTerms, typename Sources>
 HWY_INLINE V dot(const Sources& s, std::size_t i, V& least) {
   VF products[kTerms];
   for (std::size_t k = 0; k < kTerms; ++k) products[k] = hn::Mul(s.a.number(k, i), s.b.number(k, i));
   return sum(products, least);
 }
 
-void run_nv20(const Call& call, int vertices) {
+template <bool kNegates>
+void run_reading(const Call& call, int vertices) {
   const std::size_t lanes = hn::Lanes(U{});
   const std::size_t count = (static_cast<std::size_t>(vertices) + lanes - 1) / lanes * lanes;
-  const Sources s(call);
+  const Sources<kNegates> s(call);
   const V one = set(0x3f800000);
   using std::size_t;
   switch (call.operation) {
@@ -357,6 +364,15 @@ void run_nv20(const Call& call, int vertices) {
     default:
       run_scalar(call, Arithmetic::nv20, 0, vertices);
       *call.special = true;  // it may be
+  }
+}
+
+void run_nv20(const Call& call, int vertices) {
+  const auto negates = [](const Operand& operand) { return operand.sign != 0; };
+  if (std::ranges::any_of(std::span(call.sources).first(call.source_count), negates)) {
+    run_reading<true>(call, vertices);
+  } else {
+    run_reading<false>(call, vertices);
   }
 }
 
