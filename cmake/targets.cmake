@@ -60,6 +60,14 @@ function(splatscope_library folder)
   endif()
 endfunction()
 
+# Functions of FOLDER call each other across its files once a triangle: the program and the benchmarks are linked as if
+# it were one file (by GCC). Tests and fuzzers take the plain half of its objects, with -fno-lto: they link at once.
+function(splatscope_link_as_one folder)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT SPLATSCOPE_SANITIZE AND NOT SPLATSCOPE_COVERAGE)
+    target_compile_options(splatscope_${folder} PRIVATE -flto=auto -ffat-lto-objects)
+  endif()
+endfunction()
+
 # FOLDER/NAME_module.cpp, a library that the folder's own loads from beside the program when it is needed.
 function(splatscope_module folder name)
   add_library(${name}_module MODULE ${CMAKE_SOURCE_DIR}/${folder}/${name}_module.cpp)
@@ -81,6 +89,7 @@ function(splatscope_tests folder)
   if(sources)
     add_executable(${folder}_tests ${sources})
     target_link_libraries(${folder}_tests PRIVATE ${ARGN} splatscope_options GTest::gtest_main rapidcheck)
+    target_link_options(${folder}_tests PRIVATE -fno-lto)
     target_compile_definitions(${folder}_tests PRIVATE SPLATSCOPE_SOURCE="${CMAKE_SOURCE_DIR}"
                                                        SPLATSCOPE_PROGRAM="$<TARGET_FILE:splatscope>")
     set(seconds 600)
@@ -115,6 +124,7 @@ function(splatscope_fuzzers folder)
       add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 9)
     endif()
     target_link_libraries(${name} PRIVATE ${ARGN} splatscope_options)
+    target_link_options(${name} PRIVATE -fno-lto)
   endforeach()
 endfunction()
 

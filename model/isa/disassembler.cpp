@@ -71,11 +71,11 @@ std::string mnemonic(const Instruction& instruction, std::string_view name) {
 std::string disassemble(const Program& program, const Instruction& instruction) {
   const OpcodeInfo* info = find_opcode(program.version, instruction.opcode);
   if (info == nullptr) return "?";
-  std::string text = (instruction.coissue ? "+ " : "") + mnemonic(instruction, info->name);
-  if (info->has_destination) text += ' ' + text_of(program, instruction.destination);
+  std::string text = fmt::format("{}{}", instruction.coissue ? "+ " : "", mnemonic(instruction, info->name));
+  if (info->has_destination) text += fmt::format(" {}", text_of(program, instruction.destination));
   for (int i = 0; i < instruction.source_count; ++i)
-    text += (i > 0 || info->has_destination ? ", " : " ") +
-            text_of(program, instruction.sources[static_cast<std::size_t>(i)]);
+    text += fmt::format("{}{}", i > 0 || info->has_destination ? ", " : " ",
+                        text_of(program, instruction.sources[static_cast<std::size_t>(i)]));
   return text;
 }
 
