@@ -33,8 +33,9 @@ struct ShadedFragments {
 // Windows of one piece of a triangle in one band.
 struct Band {
   std::size_t piece = 0;
-  bool noted = false;                // its quads go into the work record
-  std::size_t first = 0, count = 0;  // of the batch's windows
+  bool noted = false;      // its quads go into the work record
+  std::size_t count = 0;   // of windows
+  std::size_t passed = 0;  // of their pixels
 };
 
 // A batch of triangles on its way.
@@ -44,7 +45,8 @@ class Batch {
   Batch(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork* record)
       : geometry(bindings, options, primitive::Viewport{frame.width, frame.height}),
         work(record != nullptr ? *record : own_work),
-        pipe(bindings, frame, [this](const auto& colors, auto pixels) { take(colors, pixels); }),
+        pipe(bindings, geometry.attributes(), frame,
+             [this](const auto& colors, auto pixels) { take(colors, pixels); }),
         state_(bindings.draw.state),
         frame_(frame) {}
 
@@ -122,8 +124,9 @@ class DrawStages {
       waiting_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    rasterize(batch, [&](std::size_t piece, bool noted, std::span<const raster::Window> windows) {
-      batch.bands.push_back({piece, noted, batch.windows.size(), windows.size()});
+    rasterize(batch, [&](const Band& band) {
+      batch.bands.push_back(band);
+      const auto windows = std::span(windows_).first(band.count);
       batch.windows.insert(batch.windows.end(), windows.begin(), windows.end());
     });
   }
@@ -131,9 +134,12 @@ class DrawStages {
   // Any number of batches at a time.
   static void shade(Batch& batch) {
     if (batch.at_once) return;
-    for (const Band& band : batch.bands)
-      shade(batch, band.piece, band.noted, std::span(batch.windows).subspan(band.first, band.count));
-    batch.pipe.flush_all();
+    std::size_t first = 0;
+    for (const Band& band : batch.bands) {
+      push(batch, band, std::span(batch.windows).subspan(first, band.count));
+      first += band.count;
+    }
+    batch.pipe.flush();
   }
 
   // One batch at a time.
@@ -155,19 +161,14 @@ class DrawStages {
   }
 
  private:
-  static void shade(Batch& batch, std::size_t piece, bool noted, std::span<const raster::Window> windows) {
-    if (!batch.pipe.began(piece)) {
-      const Piece next = batch.geometry.piece(piece);
-      batch.pipe.begin(piece, next.setup, next.corners, noted ? &batch.work : nullptr);
-    }
-    batch.pipe.push_band(windows);
+  static void push(Batch& batch, const Band& band, std::span<const raster::Window> windows) {
+    batch.pipe.push_band(batch.geometry.piece(band.piece), windows, band.passed,
+                         band.noted ? &batch.work : nullptr);
   }
 
   void do_at_once(Batch& batch) {
-    rasterize(batch, [&](std::size_t piece, bool noted, std::span<const raster::Window> windows) {
-      shade(batch, piece, noted, windows);
-    });
-    batch.pipe.flush_all();
+    rasterize(batch, [&](const Band& band) { push(batch, band, std::span(windows_).first(band.count)); });
+    batch.pipe.flush();
   }
 
   // Whether the draw's cull mode drops a piece. What decides is the sign on the grid that decides coverage,
@@ -190,11 +191,12 @@ class DrawStages {
            (record_ == Record::samples && is_sampled(work_.triangles.size()));
   }
 
-  // Coverage and depth; take(piece, noted, windows) gets the windows of each band in which there is something
-  // to shade or to note.
+  // Coverage and depth; take(band) gets each band in which there is something to shade or to note, with its
+  // windows in `windows_`.
   template <typename Take>
   void rasterize(Batch& batch, Take take) {
     counters_.vertices += batch.geometry.shaded_vertices.size();
+    counters_.triangles += batch.geometry.triangles.size();
     std::size_t first = 0;
     for (const BatchTriangle& triangle : batch.geometry.triangles) {
       stop_if_asked();
@@ -228,22 +230,23 @@ class DrawStages {
       counters_.fragments_passed += counts.passed;
       work.quad_count += counts.quads;
       work.quads_passed += counts.quads_passed;
-      const auto windows = std::span<const raster::Window>(windows_).first(counts.windows);
-      if (noted ? counts.windows != 0 : state_.color_write && counts.passed != 0) take(piece, noted, windows);
+      if (noted ? counts.windows != 0 : state_.color_write && counts.passed != 0)
+        take(Band{piece, noted, counts.windows, counts.passed});
       if (!noted && tiles_)
-        tiles_->note(windows, static_cast<std::uint32_t>(work_.triangles.size()), work_.tiles_written);
+        tiles_->note(std::span(windows_).first(counts.windows),
+                     static_cast<std::uint32_t>(work_.triangles.size()), work_.tiles_written);
     }
   }
 
   void count(const TriangleWork& work) {
-    ++counters_.triangles;
     counters_.quads += work.quad_count;
+    counters_.triangles_clipped += work.pieces > 1;
+    if (work.outcome == TriangleOutcome::drawn) return;  // nearly every one
     counters_.triangles_without_coverage += work.outcome == TriangleOutcome::no_coverage;
     counters_.triangles_outside += work.outcome == TriangleOutcome::outside_frustum;
     counters_.triangles_behind += work.outcome == TriangleOutcome::behind_near;
     counters_.triangles_not_finite += work.outcome == TriangleOutcome::not_finite;
     counters_.triangles_back_facing += work.outcome == TriangleOutcome::back_facing;
-    counters_.triangles_clipped += work.pieces > 1;
   }
 
   void append(const Batch& batch) {

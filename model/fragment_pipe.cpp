@@ -11,7 +11,7 @@ namespace splatscope {
 namespace {
 
 static_assert(FragmentPipe::kCapacity == pixel::kBatch);
-static_assert(raster::FragmentPlaces::kStride == pixel::kLaneStride);
+static_assert(raster::kFragmentStride == pixel::kLaneStride);
 
 constexpr unsigned kQuadRows = raster::kWindow / 2;
 
@@ -21,8 +21,10 @@ std::uint32_t row_of(std::uint64_t pixels, unsigned row) {
 
 }  // namespace
 
-FragmentPipe::FragmentPipe(const DrawBindings& bindings, const Frame& frame, Write write)
+FragmentPipe::FragmentPipe(const DrawBindings& bindings, const raster::VertexAttributes& vertices,
+                           const Frame& frame, Write write)
     : bindings_(bindings),
+      vertices_(vertices),
       width_(frame.width),
       formats_(frame.formats),
       write_(std::move(write)),
@@ -35,36 +37,29 @@ FragmentPipe::FragmentPipe(const DrawBindings& bindings, const Frame& frame, Wri
   if (samples_) attributes_[primitive::kTexcoord0] = &coordinates_;
 }
 
-void FragmentPipe::begin(std::size_t piece, const raster::TriangleSetup& setup,
-                         const std::array<const raster::Attributes*, 3>& corners, DrawWork* work) {
+void FragmentPipe::push_band(const raster::Piece& piece, std::span<const raster::Window> windows,
+                             std::size_t passed, DrawWork* work) {
   if (work != work_) flush();  // fragments of one batch are all noted, or none
-  interpolate();
   work_ = work;
-  piece_ = piece;
-  setup_ = &setup;
-  corners_ = corners;
-}
-
-void FragmentPipe::push_band(std::span<const raster::Window> windows) {
-  std::size_t passed = 0;
-  for (const raster::Window& window : windows)
-    passed += static_cast<std::size_t>(std::popcount(window.passed));
   if (passed <= kCapacity) {  // nearly every band
     if (count_ + passed > kCapacity) flush();
-    return push_rows(windows, 0, kQuadRows);
+    return push_rows(piece, windows, 0, kQuadRows);
   }
   for (unsigned row = 0; row < kQuadRows; ++row) {
     for (const raster::Window& window : windows) {
       if (count_ + static_cast<std::size_t>(std::popcount(row_of(window.passed, row))) > kCapacity) flush();
-      push_rows({&window, 1}, row, row + 1);
+      push_rows(piece, {&window, 1}, row, row + 1);
     }
   }
 }
 
-void FragmentPipe::push_rows(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row) {
+void FragmentPipe::push_rows(const raster::Piece& piece, std::span<const raster::Window> windows,
+                             unsigned first_row, unsigned end_row) {
   if (work_ != nullptr) note_quads(windows, first_row, end_row);
-  if (bindings_.draw.state.color_write)
-    count_ = raster::append_places(*setup_, windows, first_row, end_row, width_, count_, places_);
+  if (!bindings_.draw.state.color_write) return;
+  const std::size_t first = count_;
+  count_ = raster::append_places(windows, first_row, end_row, count_, places_);
+  if (count_ != first) pieces_[piece_count_++] = {piece, first, count_};
 }
 
 // The quads, and which of them each fragment that comes next is of.
@@ -89,13 +84,6 @@ void FragmentPipe::note_quads(std::span<const raster::Window> windows, unsigned 
       }
     }
   }
-}
-
-// What waits of the last piece.
-void FragmentPipe::interpolate() {
-  if (interpolated_ == count_) return;
-  raster::interpolate(*setup_, corners_, bindings_.attributes, places_, interpolated_, count_, attributes_);
-  interpolated_ = count_;
 }
 
 void FragmentPipe::note_blocks(std::span<const std::uint32_t> blocks) {
@@ -128,14 +116,10 @@ void FragmentPipe::sample(std::size_t count) {
   if (work_ != nullptr) note_blocks(noted);
 }
 
-void FragmentPipe::flush_all() {
-  flush();
-  piece_ = kNone;
-}
-
 void FragmentPipe::flush() {
-  interpolate();
   if (count_ == 0) return;
+  raster::interpolate(std::span(pieces_).first(piece_count_), bindings_.attributes, vertices_, places_,
+                      count_, width_, pixels_, attributes_);
   for (const primitive::UsedAttribute& used : bindings_.attributes)
     if (used.attribute <= primitive::kSpecular)
       for (float* values : *attributes_[static_cast<std::size_t>(used.attribute)])
@@ -143,8 +127,8 @@ void FragmentPipe::flush() {
   if (samples_) sample(count_);
   if (bindings_.pixel != nullptr) bindings_.pixel->run({}, batch_, static_cast<int>(count_));
   const auto& color = bindings_.pixel != nullptr ? batch_.r0 : batch_.v0;
-  write_({color[0], color[1], color[2], color[3]}, {places_.pixel, count_});
-  count_ = interpolated_ = 0;
+  write_({color[0], color[1], color[2], color[3]}, {pixels_.data(), count_});
+  count_ = piece_count_ = 0;
 }
 
 }  // namespace splatscope

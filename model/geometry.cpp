@@ -23,12 +23,12 @@ GeometryBatch::GeometryBatch(const DrawBindings& bindings, const RenderOptions& 
     : bindings_(bindings),
       options_(options),
       viewport_(viewport),
-      program_(bindings.vertex, bindings.draw.constants),
-      attributes_(kVertices) {
-  vertex::fill_defaults(program_.input());
-  vertex::fill_defaults(program_.grouped_input());
+      program_(bindings.vertex, bindings.draw.constants) {
+  const unsigned read = bindings.vertex.inputs_read();
+  vertex::fill_defaults(program_.input(), read);
+  vertex::fill_defaults(program_.grouped_input(), read);
   std::ranges::copy_if(bindings.draw.attributes, std::back_inserter(inputs_),
-                       [&](const VertexAttribute& a) { return bindings.vertex.reads(a.input); });
+                       [&](const VertexAttribute& a) { return (read >> a.input & 1u) != 0; });
   for (auto* values : {&projected_.x, &projected_.y, &projected_.z, &projected_.inverse_w})
     values->resize(kVertices);
   projected_.outside.resize(kVertices);
@@ -39,7 +39,19 @@ void GeometryBatch::clear() {
   shaded_vertices.clear();
   triangles.clear();
   piece_corners_.clear();
-  attributes_.resize(kVertices);
+  each_attribute([](std::vector<float>& values, std::size_t, std::size_t) { values.resize(kVertices); });
+  clipped_corners_ = 0;
+  pixels_at_most_ = 0;
+}
+
+// function(values of the vertices, attribute, component) for those that the draw reads.
+template <typename Function>
+void GeometryBatch::each_attribute(Function function) {
+  for (const primitive::UsedAttribute& used : bindings_.attributes) {
+    const auto attribute = static_cast<std::size_t>(used.attribute);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(used.components); ++c)
+      function(attributes_[attribute][c], attribute, c);
+  }
 }
 
 void GeometryBatch::process() {
@@ -61,15 +73,15 @@ void GeometryBatch::shade() {
     primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
                        first);
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(position[c], count, positions_[c].data() + first);
-    for (const primitive::UsedAttribute& used : bindings_.attributes) {
-      const auto attribute = static_cast<std::size_t>(used.attribute);
-      const auto& values = out.o[vertex::oD0 + used.attribute];   // both orders are D0, D1, T0, T1, ...
-      const bool color = used.attribute <= primitive::kSpecular;  // saturated on the way out of the unit
-      for (std::size_t lane = 0; lane < count; ++lane)
-        for (std::size_t c = 0; c < 4; ++c)
-          attributes_[first + lane][attribute][c] =
-              color ? output::saturate(values[c][lane]) : values[c][lane];
-    }
+    each_attribute([&](std::vector<float>& values, std::size_t attribute, std::size_t c) {
+      const std::span from(out.o[vertex::oD0 + attribute][c], count);  // both orders are D0, D1, T0, T1, ...
+      const auto to = values.begin() + static_cast<std::ptrdiff_t>(first);
+      if (attribute <= primitive::kSpecular) {
+        std::ranges::transform(from, to, output::saturate);  // on the way out of the unit
+      } else {
+        std::ranges::copy(from, to);
+      }
+    });
   }
 }
 
@@ -92,9 +104,14 @@ void GeometryBatch::assemble(BatchTriangle& triangle) {
 
 // With a corner that is not plain: rejected, or clipped.
 void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
-  primitive::ClipTriangle corners;
-  for (std::size_t corner = 0; corner < kCorners; ++corner)
-    corners[corner] = {position_of(triangle.vertices[corner]), attributes_[triangle.vertices[corner]]};
+  primitive::ClipTriangle corners{};
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    const std::size_t vertex = triangle.vertices[corner];
+    for (std::size_t c = 0; c < 4; ++c) corners[corner].position[c] = positions_[c][vertex];
+    each_attribute([&](const std::vector<float>& values, std::size_t attribute, std::size_t c) {
+      corners[corner].attributes[attribute][c] = values[vertex];
+    });
+  }
   const primitive::Assembled assembled =
       primitive::assemble(corners, viewport_, bindings_.attributes, clipped_);
   triangle.outcome = assembled.outcome;
@@ -102,8 +119,10 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
   for (std::size_t piece = 0; piece < triangle.pieces; ++piece) {
     std::array<std::uint32_t, kCorners> places;
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
-      places[corner] = static_cast<std::uint32_t>(attributes_.size());
-      attributes_.push_back(clipped_[piece][corner].attributes);
+      places[corner] = static_cast<std::uint32_t>(kVertices) + clipped_corners_++;
+      each_attribute([&](std::vector<float>& values, std::size_t attribute, std::size_t c) {
+        values.push_back(clipped_[piece][corner].attributes[attribute][c]);
+      });
     }
     add_piece(places[0], places[1], places[2]);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
@@ -123,16 +142,12 @@ void GeometryBatch::add_piece(std::uint32_t a, std::uint32_t b, std::uint32_t c)
 void GeometryBatch::set_up() {
   if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
   const int bits = options_.formats.subpixel_bits;
+  const auto out = std::span(setups_).subspan(piece_corners_.size() - waiting_, waiting_);
   raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits), !bindings_.attributes.empty(),
-                 std::span(setups_).subspan(piece_corners_.size() - waiting_, waiting_));
+                 out);
   waiting_ = 0;
-}
-
-std::int64_t GeometryBatch::pixels_at_most() const {
-  std::int64_t pixels = 0;
-  for (const raster::TriangleSetup& setup : std::span(setups_).first(piece_corners_.size()))
-    if (setup.covers) pixels += std::int64_t{setup.right - setup.left} * (setup.bottom - setup.top);
-  return pixels;
+  for (const raster::TriangleSetup& setup : out)
+    if (setup.covers) pixels_at_most_ += std::int64_t{setup.right - setup.left} * (setup.bottom - setup.top);
 }
 
 std::array<std::uint16_t, 3> indices_at(const Buffer& indices, std::size_t first) {

@@ -20,12 +20,6 @@ struct BatchTriangle {
   TriangleOutcome outcome = TriangleOutcome::drawn;
 };
 
-// A piece of a triangle: mostly the triangle itself.
-struct Piece {
-  const raster::TriangleSetup& setup;
-  std::array<const raster::Attributes*, 3> corners;
-};
-
 class GeometryBatch {
  public:
   static constexpr std::size_t kVertices = 512;
@@ -43,21 +37,18 @@ class GeometryBatch {
   void process();
 
   // The pieces of all triangles, in order.
-  Piece piece(std::size_t i) const {
-    const auto [a, b, c] = piece_corners_[i];
-    return {setups_[i], {&attributes_[a], &attributes_[b], &attributes_[c]}};
-  }
+  raster::Piece piece(std::size_t i) const { return {&setups_[i], piece_corners_[i]}; }
+  const raster::VertexAttributes& attributes() const { return attributes_; }
   const raster::TriangleSetup& setup(std::size_t piece) const { return setups_[piece]; }
   // Of the rectangles of all pieces together.
-  std::int64_t pixels_at_most() const;
+  std::int64_t pixels_at_most() const { return pixels_at_most_; }
 
  private:
   void shade();
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);
-  Vec4 position_of(std::size_t vertex) const {
-    return {positions_[0][vertex], positions_[1][vertex], positions_[2][vertex], positions_[3][vertex]};
-  }
+  template <typename Function>
+  void each_attribute(Function function);
   void add_piece(std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void set_up();
 
@@ -67,13 +58,15 @@ class GeometryBatch {
   std::vector<VertexAttribute> inputs_;  // that the program reads
   vertex::VertexProgram::Bound program_;
   std::array<std::array<float, kVertices>, 4> positions_;  // x y z w
-  std::vector<raster::Attributes> attributes_;  // of the vertices, and behind them of clipped corners
+  raster::VertexAttributes attributes_;  // of the vertices, and behind them of clipped corners
+  std::uint32_t clipped_corners_ = 0;
   primitive::ProjectedVertices projected_;
   std::array<primitive::WindowTriangle, primitive::kMaxPieces> clipped_;
   raster::Corners corners_;                    // of the last pieces, which are not set up yet
   std::size_t waiting_ = 0;                    // how many these are
   std::vector<raster::TriangleSetup> setups_;  // of each piece; those behind the last one are left over
   std::vector<std::array<std::uint32_t, 3>> piece_corners_;  // their places in `attributes_`
+  std::int64_t pixels_at_most_ = 0;
 };
 
 // Three indices of a buffer, from number `first`: those of a triangle of a list. They lie within it.

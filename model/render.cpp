@@ -92,9 +92,10 @@ class Renderer {
         commands_(commands),
         options_(options),
         rendered_(rendered),
-        surfaces_(trace.surfaces, Frame(trace.width, trace.height, options.formats)),
         programs_(trace, options.formats),
         indices_(options.vertex_cache_entries) {
+    for (std::uint32_t i = 0; i < trace.surfaces; ++i)
+      surfaces_.emplace_back(trace.width, trace.height, options.formats);
     output::clear(Clear{}, rendered.frame);
   }
 

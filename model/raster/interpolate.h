@@ -3,32 +3,45 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "model/raster/raster.h"
 
 namespace splatscope::raster {
 
-using Attributes = std::array<Vec4, primitive::kAttributes>;  // of a vertex
+// Of vertices, [attribute][component][vertex]; of what no draw reads there may be none.
+using VertexAttributes = std::array<std::array<std::vector<float>, 4>, primitive::kAttributes>;
 
-// Fragments on their way to the pixel unit: structure of arrays, with room behind for a whole SIMD register.
-struct FragmentPlaces {
-  static constexpr std::size_t kCapacity = 256, kStride = kCapacity + 16;
-  alignas(64) float x[kStride], y[kStride];  // pixels from their triangle's origin pixel
-  alignas(64) std::uint32_t pixel[kStride];  // of the frame, row-major
+// A piece of a triangle: mostly the triangle itself.
+struct Piece {
+  const TriangleSetup* setup;
+  std::array<std::uint32_t, 3> corners;  // places in the VertexAttributes
 };
-using FragmentValues = float[4][FragmentPlaces::kStride];
+
+// Arrays over fragments on their way to the pixel unit have room behind for a whole SIMD register.
+inline constexpr std::size_t kFragments = 256, kFragmentStride = kFragments + 16;
+using FragmentValues = float[4][kFragmentStride];
 using FragmentAttributes = std::array<FragmentValues*, primitive::kAttributes>;  // where each one goes
 
-// Appends the pixels that passed in rows of quads `first_row`..`end_row`-1 (0 to 4) of windows side by side,
-// quad by quad through all windows and then row by row, behind the first `count` places. What lies behind
-// them is overwritten. Returns how many there are then, at most kCapacity. `width`: of the frame.
-std::size_t append_places(const TriangleSetup& setup, std::span<const Window> windows, unsigned first_row,
-                          unsigned end_row, std::uint32_t width, std::size_t count, FragmentPlaces& places);
+// Of which piece fragments `first`..`end`-1 are.
+struct FragmentsOfPiece {
+  Piece piece;
+  std::size_t first, end;
+};
 
-// Perspective-correct values of the attributes for fragments first..end-1, all of one triangle. What lies
-// behind `end` is overwritten.
-void interpolate(const TriangleSetup& setup, const std::array<const Attributes*, 3>& corners,
-                 std::span<const primitive::UsedAttribute> used, const FragmentPlaces& places,
-                 std::size_t first, std::size_t end, const FragmentAttributes& out);
+// Appends the places x + 65536 y in the frame of the pixels that passed in rows of quads
+// `first_row`..`end_row`-1 (0 to 4) of windows side by side, quad by quad through all windows and then row by
+// row, behind the first `count` of `places`. What lies behind them is overwritten. Returns how many there are
+// then, at most kFragments.
+std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
+                          std::size_t count, std::span<std::uint32_t, kFragmentStride> places);
+
+// The numbers of the pixels (row-major, `width` in a row) at the first `count` places, and the
+// perspective-correct values of the attributes there; `pieces` in the order of their fragments. What lies
+// behind is overwritten.
+void interpolate(std::span<const FragmentsOfPiece> pieces, std::span<const primitive::UsedAttribute> used,
+                 const VertexAttributes& vertices, std::span<const std::uint32_t, kFragmentStride> places,
+                 std::size_t count, std::uint32_t width, std::span<std::uint32_t, kFragmentStride> pixels,
+                 const FragmentAttributes& out);
 
 }  // namespace splatscope::raster

@@ -5,92 +5,117 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "model/number/simd_mask-inl.h"
 #include "model/raster/interpolate.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F = hn::CappedTag<float, FragmentPlaces::kStride - FragmentPlaces::kCapacity>;
+using F = hn::CappedTag<float, kFragmentStride - kFragments>;
+using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
 using V = hn::Vec<F>;
+using VU = hn::Vec<U>;
+using Places = std::span<const std::uint32_t, kFragmentStride>;
 
 HWY_INLINE V at(const Plane& plane, V x, V y) {
   return hn::Add(hn::Set(F{}, plane.origin),
                  hn::Add(hn::Mul(hn::Set(F{}, plane.dx), x), hn::Mul(hn::Set(F{}, plane.dy), y)));
 }
 
-void interpolate(const TriangleSetup& setup, const std::array<const Attributes*, 3>& corners,
-                 std::span<const primitive::UsedAttribute> used, const FragmentPlaces& places,
-                 std::size_t first, std::size_t end, const FragmentAttributes& out) {
-  for (std::size_t i = first; i < end; i += hn::Lanes(F{})) {
-    const V x = hn::LoadU(F{}, places.x + i), y = hn::LoadU(F{}, places.y + i);
+HWY_INLINE VU column_of(VU place) {
+  return hn::And(place, hn::Set(U{}, 0xffffu));
+}
+HWY_INLINE VU row_of(VU place) {
+  return hn::ShiftRight<16>(place);
+}
+
+HWY_INLINE void interpolate_piece(const FragmentsOfPiece& fragments,
+                                  std::span<const primitive::UsedAttribute> used,
+                                  const VertexAttributes& vertices, Places places,
+                                  const FragmentAttributes& out) {
+  const TriangleSetup& setup = *fragments.piece.setup;
+  const auto [corner0, corner1, corner2] = fragments.piece.corners;
+  const auto from = [](VU numbers, int origin) HWY_ATTR {
+    return hn::ConvertTo(F{}, hn::Sub(hn::BitCast(I{}, numbers), hn::Set(I{}, origin)));
+  };
+  for (std::size_t i = fragments.first; i < fragments.end; i += hn::Lanes(F{})) {
+    const VU place = hn::LoadU(U{}, places.data() + i);
+    const V x = from(column_of(place), setup.left), y = from(row_of(place), setup.top);
     const V inverse_scale = hn::Div(hn::Set(F{}, 1.0f), at(setup.scale, x, y));
     const V b1 = hn::Mul(at(setup.weight1, x, y), inverse_scale);
     const V b2 = hn::Mul(at(setup.weight2, x, y), inverse_scale);
     for (const primitive::UsedAttribute& use : used) {
       const auto attribute = static_cast<std::size_t>(use.attribute);
-      const Vec4 &a0 = (*corners[0])[attribute], &a1 = (*corners[1])[attribute],
-                 &a2 = (*corners[2])[attribute];
       for (std::size_t c = 0; c < static_cast<std::size_t>(use.components); ++c) {
+        const float* values = vertices[attribute][c].data();
+        const float a0 = values[corner0], a1 = values[corner1], a2 = values[corner2];
         // In this form an attribute that is the same at all corners stays exactly that.
-        const V value = hn::Add(hn::Set(F{}, a0[c]), hn::Add(hn::Mul(b1, hn::Set(F{}, a1[c] - a0[c])),
-                                                             hn::Mul(b2, hn::Set(F{}, a2[c] - a0[c]))));
+        const V value = hn::Add(hn::Set(F{}, a0), hn::Add(hn::Mul(b1, hn::Set(F{}, a1 - a0)),
+                                                          hn::Mul(b2, hn::Set(F{}, a2 - a0))));
         hn::StoreU(value, F{}, (*out[attribute])[c] + i);
       }
     }
   }
 }
 
+void interpolate(std::span<const FragmentsOfPiece> pieces, std::span<const primitive::UsedAttribute> used,
+                 const VertexAttributes& vertices, Places places, std::size_t count, std::uint32_t width,
+                 std::span<std::uint32_t, kFragmentStride> pixels, const FragmentAttributes& out) {
+  for (const FragmentsOfPiece& fragments : pieces) interpolate_piece(fragments, used, vertices, places, out);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(U{})) {
+    const VU place = hn::LoadU(U{}, places.data() + i);
+    const VU row = hn::Mul(row_of(place), hn::Set(U{}, width));
+    hn::StoreU(hn::Add(row, column_of(place)), U{}, pixels.data() + i);
+  }
+}
+
+// The places of a row of quads from its first pixel.
+struct RowPlaces {
+  alignas(64) std::uint32_t of[Window::kRowLanes];
+};
+constexpr RowPlaces make_row_places() {
+  RowPlaces places{};
+  for (std::size_t lane = 0; lane < Window::kRowLanes; ++lane)
+    places.of[lane] = static_cast<std::uint32_t>(Window::kLaneX[lane] + (Window::kLaneY[lane] << 16));
+  return places;
+}
+constexpr RowPlaces kRowPlaces = make_row_places();
+
 #if HWY_TARGET == HWY_SCALAR
 
-std::size_t append_row(const Window& window, unsigned row, int left, int top, std::uint32_t width,
-                       std::size_t count, FragmentPlaces& places) {
-  for (unsigned bit = 16 * row; bit < 16 * (row + 1); ++bit) {
-    if ((window.passed >> bit & 1u) == 0) continue;
-    const int x = window.x + Window::x_of(bit), y = window.y + Window::y_of(bit);
-    places.x[count] = static_cast<float>(x - left);
-    places.y[count] = static_cast<float>(y - top);
-    places.pixel[count++] = static_cast<std::uint32_t>(y) * width + static_cast<std::uint32_t>(x);
-  }
-  return count;
+std::size_t append_lanes(std::uint32_t passed, std::size_t first_lane, std::uint32_t origin,
+                         std::uint32_t* out) {
+  if (passed == 0) return 0;
+  *out = kRowPlaces.of[first_lane] + origin;
+  return 1;
 }
 
 #else
 
-using I = hn::RebindToSigned<F>;
-using U = hn::RebindToUnsigned<F>;
-
-HWY_INLINE std::size_t append_row(const Window& window, unsigned row, int left, int top, std::uint32_t width,
-                                  std::size_t count, FragmentPlaces& places) {
-  const auto passed = static_cast<std::uint32_t>(window.passed >> 16 * row & 0xffffu);
-  const int y = window.y + 2 * static_cast<int>(row);
-  const std::uint32_t first = static_cast<std::uint32_t>(y) * width + static_cast<std::uint32_t>(window.x);
-  for (std::size_t lane = 0; lane < Window::kRowLanes; lane += hn::Lanes(F{})) {
-    const std::uint32_t lanes = passed >> lane & (0xffffu >> (Window::kRowLanes - hn::Lanes(F{})));
-    if (lanes == 0) continue;
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(lanes), static_cast<std::uint8_t>(lanes >> 8)};
-    const auto lane_x = hn::Load(I{}, Window::kLaneX + lane), lane_y = hn::Load(I{}, Window::kLaneY + lane);
-    const auto pixel =
-        hn::Add(hn::Set(U{}, first),
-                hn::Add(hn::BitCast(U{}, lane_x), hn::Mul(hn::BitCast(U{}, lane_y), hn::Set(U{}, width))));
-    const auto to_float = [](auto numbers, int offset)
-                              HWY_ATTR { return hn::ConvertTo(F{}, hn::Add(numbers, hn::Set(I{}, offset))); };
-    const auto mask = hn::LoadMaskBits(F{}, bits);
-    hn::StoreU(hn::Compress(to_float(lane_x, window.x - left), mask), F{}, places.x + count);
-    hn::StoreU(hn::Compress(to_float(lane_y, y - top), mask), F{}, places.y + count);
-    hn::StoreU(hn::Compress(pixel, hn::RebindMask(U{}, mask)), U{}, places.pixel + count);
-    count += hwy::PopCount(lanes);
-  }
-  return count;
+HWY_INLINE std::size_t append_lanes(std::uint32_t passed, std::size_t first_lane, std::uint32_t origin,
+                                    std::uint32_t* out) {
+  const VU places = hn::Add(hn::Load(U{}, kRowPlaces.of + first_lane), hn::Set(U{}, origin));
+  hn::StoreU(hn::Compress(places, splatscope::HWY_NAMESPACE::mask_of(U{}, passed)), U{}, out);
+  return hwy::PopCount(passed);
 }
 
 #endif
 
-std::size_t append_places(const TriangleSetup& setup, std::span<const Window> windows, unsigned first_row,
-                          unsigned end_row, std::uint32_t width, std::size_t count, FragmentPlaces& places) {
-  for (unsigned row = first_row; row < end_row; ++row)
-    for (const Window& window : windows)
-      count = append_row(window, row, setup.left, setup.top, width, count, places);
+std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
+                          std::size_t count, std::span<std::uint32_t, kFragmentStride> places) {
+  constexpr std::uint32_t kLaneBits = 0xffffu >> (Window::kRowLanes - hn::MaxLanes(F{}));
+  for (unsigned row = first_row; row < end_row; ++row) {
+    for (const Window& window : windows) {
+      const auto origin =
+          static_cast<std::uint32_t>(window.x + ((window.y + 2 * static_cast<int>(row)) << 16));
+      const auto passed = static_cast<std::uint32_t>(window.passed >> 16 * row & 0xffffu);
+      // Also where none passed: that cannot be foreseen.
+      for (std::size_t lane = 0; lane < Window::kRowLanes; lane += hn::Lanes(F{}))
+        count += append_lanes(passed >> lane & kLaneBits, lane, origin, places.data() + count);
+    }
+  }
   return count;
 }
 
@@ -102,15 +127,16 @@ namespace splatscope::raster {
 HWY_EXPORT(interpolate);
 HWY_EXPORT(append_places);
 
-std::size_t append_places(const TriangleSetup& setup, std::span<const Window> windows, unsigned first_row,
-                          unsigned end_row, std::uint32_t width, std::size_t count, FragmentPlaces& places) {
-  return HWY_DYNAMIC_DISPATCH(append_places)(setup, windows, first_row, end_row, width, count, places);
+std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
+                          std::size_t count, std::span<std::uint32_t, kFragmentStride> places) {
+  return HWY_DYNAMIC_DISPATCH(append_places)(windows, first_row, end_row, count, places);
 }
 
-void interpolate(const TriangleSetup& setup, const std::array<const Attributes*, 3>& corners,
-                 std::span<const primitive::UsedAttribute> used, const FragmentPlaces& places,
-                 std::size_t first, std::size_t end, const FragmentAttributes& out) {
-  HWY_DYNAMIC_DISPATCH(interpolate)(setup, corners, used, places, first, end, out);
+void interpolate(std::span<const FragmentsOfPiece> pieces, std::span<const primitive::UsedAttribute> used,
+                 const VertexAttributes& vertices, std::span<const std::uint32_t, kFragmentStride> places,
+                 std::size_t count, std::uint32_t width, std::span<std::uint32_t, kFragmentStride> pixels,
+                 const FragmentAttributes& out) {
+  HWY_DYNAMIC_DISPATCH(interpolate)(pieces, used, vertices, places, count, width, pixels, out);
 }
 }  // namespace splatscope::raster
 #endif

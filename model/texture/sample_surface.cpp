@@ -22,7 +22,7 @@ std::uint32_t block_of(std::uint32_t x, std::uint32_t y, std::uint32_t tiles_acr
 
 void sample_surface(const Frame& surface, const float* u, const float* v, const std::array<float*, 4>& color,
                     std::span<std::uint32_t> blocks) {
-  const auto bytes = static_cast<std::uint32_t>(bytes_per_pixel(surface.formats.frame));
+  const std::uint32_t bytes = bytes_per_pixel(surface.formats.frame);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const std::uint32_t x = nearest(u[i], surface.width), y = nearest(v[i], surface.height);
     const Vec4 value = surface.color(std::size_t{y} * surface.width + x);

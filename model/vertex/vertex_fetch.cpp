@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "model/vertex/groups.h"
@@ -88,10 +89,10 @@ std::uint32_t size_of(VertexFormat format) {
   return 0;
 }
 
-void fill_defaults(InputBatch& out) {
-  for (auto& input : out.v)
+void fill_defaults(InputBatch& out, unsigned inputs) {
+  for (; inputs != 0; inputs &= inputs - 1)
     for (std::size_t component = 0; component < 4; ++component)
-      std::fill_n(input[component], kBatch, kDefault[component]);
+      std::fill_n(out.v[std::countr_zero(inputs)][component], kBatch, kDefault[component]);
 }
 
 void fetch(std::span<const VertexAttribute> attributes, std::span<const std::byte> buffer,

@@ -12,8 +12,8 @@ namespace splatscope::vertex {
 // Bytes that one attribute of this format takes.
 std::uint32_t size_of(VertexFormat format);
 
-// What components that no fetch writes hold, in all lanes: 0, 0, 0, 1.
-void fill_defaults(InputBatch& out);
+// What components that no fetch writes hold, in all lanes of `inputs` (bit n: v<n>): 0, 0, 0, 1.
+void fill_defaults(InputBatch& out, unsigned inputs = 0xffff);
 
 // The vertices `vertex_numbers` (at most kBatch) of a buffer with `stride` bytes a vertex into lanes 0, 1,
 // ... of `out`: the components that each attribute's format has. d3dcolor is blue, green, red, alpha in

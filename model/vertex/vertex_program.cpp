@@ -161,10 +161,10 @@ void VertexProgram::Execution::set_constants(std::span<const Vec4> constants, Wo
 }
 
 void VertexProgram::Execution::enable_groups(const InputBatch& grouped_in, InputBatch& in) {
-  auto out = std::make_unique<OutputBatch>();
+  auto out = std::make_unique_for_overwrite<OutputBatch>();
   OutputBatch& grouped_out = *out;
   groups_.reset(new Groups{{grouped_in, grouped_out}, std::move(out), in});
-  groups_->lanes.workspace = each_.workspace;  // its constants
+  set_constants(each_.workspace.constants, groups_->lanes.workspace);
 }
 
 const VertexProgram::Execution::Plan& VertexProgram::Execution::plan_for(unsigned grouped_inputs) {
@@ -297,8 +297,10 @@ VertexProgram::~VertexProgram() = default;
 VertexProgram::VertexProgram(VertexProgram&&) noexcept = default;
 VertexProgram& VertexProgram::operator=(VertexProgram&&) noexcept = default;
 
-bool VertexProgram::reads(int input) const {
-  return std::ranges::count(decoded_->inputs_read, input) != 0;
+unsigned VertexProgram::inputs_read() const {
+  unsigned read = 0;
+  for (const std::uint16_t index : decoded_->inputs_read) read |= 1u << index;
+  return read;
 }
 
 void VertexProgram::run_batch(Execution& execution, int count, unsigned grouped_inputs) const {
@@ -328,7 +330,7 @@ struct VertexProgram::Bound::State {
     execution.enable_groups(grouped_in, in);
   }
   const VertexProgram& program;
-  InputBatch in{}, grouped_in{};
+  InputBatch in, grouped_in;
   OutputBatch out;
   Execution execution;
 };
@@ -349,9 +351,7 @@ const OutputBatch& VertexProgram::Bound::output() const {
   return state_->out;
 }
 void VertexProgram::Bound::run(int count, unsigned grouped_inputs) {
-  unsigned read = 0;
-  for (const std::uint16_t index : state_->program.decoded_->inputs_read) read |= 1u << index;
-  state_->program.run_batch(state_->execution, count, grouped_inputs & read);
+  state_->program.run_batch(state_->execution, count, grouped_inputs & state_->program.inputs_read());
 }
 
 }  // namespace splatscope::vertex

@@ -43,7 +43,7 @@ class VertexProgram {
   VertexProgram(VertexProgram&&) noexcept;
   VertexProgram& operator=(VertexProgram&&) noexcept;
 
-  bool reads(int input) const;  // v0..v15
+  unsigned inputs_read() const;  // bit n: v<n>
 
   // Runs vertices 0..count-1 (count <= kBatch). Constants from c0; those not given are 0; `def` in the
   // program wins.
@@ -57,6 +57,7 @@ class VertexProgram {
     Bound(Bound&&) noexcept;
     Bound& operator=(Bound&&) noexcept;
 
+    // What the program reads of it is to be filled in, in all lanes.
     InputBatch& input();
     // Inputs in which the vertices of each group agree, a lane a group.
     InputBatch& grouped_input();
