@@ -81,7 +81,7 @@ read_group() {  # makes GROUP.clean where nothing was found
 }
 export -f read_together read_group
 version=$("$tidy" --version)
-declare -A keys
+declare -A keys=()
 for file in "$work"/*.key; do
   group=$(basename "$file" .key)
   key=$( (echo "$version" && cat "$root/.clang-tidy" "$root/cmake/tidy.sh" && sort -u "$file") | sha256sum | cut -d' ' -f1)
