@@ -168,37 +168,75 @@ void Indices::begin(const DrawBindings& bindings) {
   batch_ = shaded_ = 0;
 }
 
-std::uint16_t Indices::place_of(std::uint32_t index, Known& known, GeometryBatch& batch,
-                                std::uint8_t& new_vertices) {
-  const std::uint32_t number = bindings_->draw.base_vertex + index;
-  if (known.inserted == 0 || shaded_ - (known.inserted - 1) > cache_entries_) {
-    batch.shaded_vertices.push_back(number);
-    known.inserted = ++shaded_;
-    ++new_vertices;
+// Its bytes come from memory while others are filled in.
+void Indices::prefetch(std::uint32_t vertex) const {
+  hwy::Prefetch(bindings_->vertices.bytes.data() + std::size_t{vertex} * bindings_->draw.vertex_stride);
+}
+
+void Indices::fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch) {
+  BatchTriangle& triangle = batch.triangles.emplace_back();
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    const std::uint32_t vertex = bindings_->draw.base_vertex + index[corner];
+    Known& known = known_[index[corner]];
+    if (!is_in_fifo(known)) {
+      batch.shaded_vertices.push_back(vertex);
+      known.inserted = ++shaded_;
+      ++triangle.new_vertices;
+    }
+    if (known.batch < batch_) {
+      known.batch = batch_ + static_cast<std::uint32_t>(batch.vertices.size());
+      batch.vertices.push_back(vertex);
+      prefetch(vertex);
+    }
+    triangle.vertices[corner] = static_cast<std::uint16_t>(known.batch - batch_);
   }
-  if (known.batch < batch_) {
-    known.batch = batch_ + static_cast<std::uint32_t>(batch.vertices.size());
-    batch.vertices.push_back(number);
-    // Its bytes come from memory while the others are filled in.
-    hwy::Prefetch(bindings_->vertices.bytes.data() + std::size_t{number} * bindings_->draw.vertex_stride);
+}
+
+// The same for two triangles at once where they are 0 1 2 and 0 2 3 of four vertices that follow one another,
+// as splats are drawn, and all four are new. False: they are not, and nothing has been done.
+bool Indices::fill_quad(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch) {
+  constexpr std::uint32_t kQuad = 4, kFewestEntries = kCorners;  // of the FIFO, that keep the first vertex
+  const Draw& draw = bindings_->draw;
+  const auto place = static_cast<std::uint32_t>(batch.vertices.size());
+  if (position_ + 2 * kCorners > draw.index_count || place + kQuad > GeometryBatch::kVertices ||
+      cache_entries_ < kFewestEntries)
+    return false;
+  const auto [a, b, c] = index;
+  const auto [d, e, f] = indices_at(bindings_->indices, draw.first_index + position_ + kCorners);
+  if (b != a + 1 || c != a + 2 || d != a || e != c || f != a + 3) return false;
+  const std::span<Known> known(&known_[a], kQuad);
+  if (std::ranges::any_of(known, [&](const Known& k) { return k.batch >= batch_ || is_in_fifo(k); }))
+    return false;
+  const std::uint32_t vertex = draw.base_vertex + a;
+  for (std::uint32_t i = 0; i < kQuad; ++i) {
+    known[i] = {shaded_ + i + 1, batch_ + place + i};
+    prefetch(vertex + i);
   }
-  return static_cast<std::uint16_t>(known.batch - batch_);
+  shaded_ += kQuad;
+  for (auto* vertices : {&batch.vertices, &batch.shaded_vertices})
+    vertices->insert(vertices->end(), {vertex, vertex + 1, vertex + 2, vertex + 3});
+  const auto at = [place](std::uint32_t i) { return static_cast<std::uint16_t>(place + i); };
+  batch.triangles.push_back({{at(0), at(1), at(2)}, 3});
+  batch.triangles.push_back({{at(0), at(2), at(3)}, 1});
+  return true;
 }
 
 bool Indices::fill(GeometryBatch& batch) {
   batch.clear();
   batch_ += GeometryBatch::kVertices;
   const Draw& draw = bindings_->draw;
-  for (; position_ + kCorners <= draw.index_count; position_ += kCorners) {
+  while (position_ + kCorners <= draw.index_count) {
     const auto index = indices_at(bindings_->indices, draw.first_index + position_);
-    Known* const known[kCorners] = {&known_[index[0]], &known_[index[1]], &known_[index[2]]};
+    if (fill_quad(index, batch)) {
+      position_ += 2 * kCorners;
+      continue;
+    }
     std::size_t size = batch.vertices.size();  // with this triangle, at most
-    for (const Known* corner : known) size += corner->batch < batch_;
+    for (const std::uint16_t corner : index) size += known_[corner].batch < batch_;
     // Exactly full, a batch of whole quads ends with one.
     if (size > GeometryBatch::kVertices) break;
-    BatchTriangle& triangle = batch.triangles.emplace_back();
-    for (std::size_t corner = 0; corner < kCorners; ++corner)
-      triangle.vertices[corner] = place_of(index[corner], *known[corner], batch, triangle.new_vertices);
+    fill_triangle(index, batch);
+    position_ += kCorners;
   }
   return !batch.triangles.empty();
 }

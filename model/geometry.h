@@ -86,7 +86,12 @@ class Indices {
     std::uint32_t inserted = 0;  // into the FIFO: 0 never, else 1 + its place in the order of shading
     std::uint32_t batch = 0;     // the last one it was in, times kVertices, and its place there
   };
-  std::uint16_t place_of(std::uint32_t index, Known& known, GeometryBatch& batch, std::uint8_t& new_vertices);
+  bool is_in_fifo(const Known& known) const {
+    return known.inserted != 0 && shaded_ - (known.inserted - 1) <= cache_entries_;
+  }
+  void fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch);
+  bool fill_quad(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch);
+  void prefetch(std::uint32_t vertex) const;
 
   const DrawBindings* bindings_ = nullptr;
   std::uint32_t cache_entries_;

@@ -9,11 +9,14 @@
 #include <deque>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "model/testing/simd_targets.h"
 
 namespace splatscope {
 namespace {
@@ -85,7 +88,7 @@ TEST(Render, CullModeDropsTheWindingItNames) {
 // Every triangle has one winding or none: with one of the modes it is there, with the other it is not.
 TEST(Render, TheTwoCullModesShareTheTrianglesBetweenThem) {
   const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> anywhere(-2, 2), w(-0.5f, 1.5f);
   std::array<float, 12 * 500> corners;
@@ -104,20 +107,24 @@ TEST(Render, TheTwoCullModesShareTheTrianglesBetweenThem) {
 // does not depend on it.
 TEST(Render, ShadesWhatMissesTheVertexCache) {
   const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> anywhere(-1, 1);
   static std::array<float, 4 * 3000> corners;
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = i % 4 == 3 ? 1 : std::abs(anywhere(random));
   Trace trace = white_triangles(corners, CullMode::none);
-  std::array<std::uint16_t, 3 * 2000> indices;  // near one another, moving on
+  std::array<std::uint16_t, 3 * 2000> indices;  // near one another, moving on; many of them quads
   for (std::size_t i = 0; i < indices.size(); ++i)
-    indices[i] = static_cast<std::uint16_t>(i * 2980 / indices.size() + random() % 20);
+    indices[i] = static_cast<std::uint16_t>(i * 2970 / indices.size() + random() % 20);
+  constexpr std::array<std::uint16_t, 6> quad = {0, 1, 2, 0, 2, 3};
+  for (std::size_t i = 0; i + quad.size() < indices.size(); i += 3 * (1 + random() % 4))
+    for (std::size_t k = 1; k < quad.size(); ++k)
+      indices[i + k] = static_cast<std::uint16_t>(indices[i] + quad[k]);
   trace.buffers[1] = buffer_of(indices);
   std::get<Draw>(trace.commands[0]).index_count = static_cast<std::uint32_t>(indices.size());
   RenderOptions options;
   const Rendered usual = render(trace, options);
-  for (const int entries : {1, 4, 18, 64}) {
+  for (const int entries : {1, 2, 3, 4, 18, 64}) {
     std::deque<std::uint32_t> fifo;
     std::vector<std::uint32_t> shaded;
     for (const std::uint16_t index : indices) {
@@ -182,6 +189,17 @@ TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
     EXPECT_EQ(one.counters.fragments_passed, many.counters.fragments_passed);
     EXPECT_EQ(one.counters.fragments_passed, frame_alone.counters.fragments_passed);
   }
+}
+
+TEST(Render, EverySimdTargetGivesTheSameBits) {
+  const Trace trace = many_triangles();
+  std::optional<Rendered> first;
+  testing::on_each_simd_target([&] {
+    const Rendered rendered = render(trace, {});
+    if (!first) first = rendered;
+    EXPECT_EQ(first->frame, rendered.frame);
+    EXPECT_EQ(listed(first->work[0].quads), listed(rendered.work[0].quads));
+  });
 }
 
 // Of the triangles that are not sampled there is no quad, but every tile in which they were the first to
