@@ -15,10 +15,6 @@ static_assert(raster::kFragmentStride == pixel::kLaneStride);
 
 constexpr unsigned kQuadRows = raster::kWindow / 2;
 
-std::uint32_t row_of(std::uint64_t pixels, unsigned row) {
-  return static_cast<std::uint32_t>(pixels >> 16 * row & 0xffffu);
-}
-
 }  // namespace
 
 FragmentPipe::FragmentPipe(const DrawBindings& bindings, const raster::VertexAttributes& vertices,
@@ -47,7 +43,9 @@ void FragmentPipe::push_band(const raster::Piece& piece, std::span<const raster:
   }
   for (unsigned row = 0; row < kQuadRows; ++row) {
     for (const raster::Window& window : windows) {
-      if (count_ + static_cast<std::size_t>(std::popcount(row_of(window.passed, row))) > kCapacity) flush();
+      if (count_ + static_cast<std::size_t>(std::popcount(raster::Window::row(window.passed, row))) >
+          kCapacity)
+        flush();
       push_rows(piece, {&window, 1}, row, row + 1);
     }
   }
@@ -59,7 +57,10 @@ void FragmentPipe::push_rows(const raster::Piece& piece, std::span<const raster:
   if (!bindings_.draw.state.color_write) return;
   const std::size_t first = count_;
   count_ = raster::append_places(windows, first_row, end_row, count_, places_);
-  if (count_ != first) pieces_[piece_count_++] = {piece, first, count_};
+  if (count_ == first) return;
+  if (piece_count_ == 0 || pieces_[piece_count_ - 1].piece.setup != piece.setup)
+    pieces_[piece_count_++] = {piece, first, count_};
+  pieces_[piece_count_ - 1].end = count_;
 }
 
 // The quads, and which of them each fragment that comes next is of.
@@ -67,8 +68,8 @@ void FragmentPipe::note_quads(std::span<const raster::Window> windows, unsigned 
   std::size_t fragment = count_;
   for (unsigned row = first_row; row < end_row; ++row) {
     for (const raster::Window& window : windows) {
-      std::uint32_t covered = row_of(window.covered, row);
-      const std::uint32_t passed = row_of(window.passed, row);
+      std::uint32_t covered = raster::Window::row(window.covered, row);
+      const std::uint32_t passed = raster::Window::row(window.passed, row);
       while (covered != 0) {
         const auto column = static_cast<unsigned>(std::countr_zero(covered)) / 4;
         const auto covered_here = static_cast<std::uint8_t>(covered >> 4 * column & 0xfu);

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <vector>
+#include <span>
 
 #include "model/draw.h"
 #include "model/raster/interpolate.h"
@@ -45,9 +46,9 @@ class FragmentPipe {
   Write write_;
   bool samples_ = false;
   std::size_t count_ = 0;                                   // of fragments in the batch
-  std::array<raster::FragmentsOfPiece, kCapacity> pieces_;  // that these are of, a band each
+  std::array<raster::FragmentsOfPiece, kCapacity> pieces_;  // that these are of, at least one each
   std::size_t piece_count_ = 0;
-  std::array<std::uint32_t, raster::kFragmentStride> places_, pixels_;
+  alignas(64) std::array<std::uint32_t, raster::kFragmentStride> places_, pixels_;
   std::array<std::uint32_t, kCapacity + 4> quads_;    // of `work`, a fragment each
   alignas(64) raster::FragmentValues coordinates_{};  // of the sampled texture
   raster::FragmentAttributes attributes_{};           // in `batch_`, or the coordinates

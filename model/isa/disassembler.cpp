@@ -71,6 +71,7 @@ std::string mnemonic(const Instruction& instruction, std::string_view name) {
 std::string disassemble(const Program& program, const Instruction& instruction) {
   const OpcodeInfo* info = find_opcode(program.version, instruction.opcode);
   if (info == nullptr) return "?";
+  // No sums of strings: linked as one, GCC 12 takes these for overflows.
   std::string text = fmt::format("{}{}", instruction.coissue ? "+ " : "", mnemonic(instruction, info->name));
   if (info->has_destination) text += fmt::format(" {}", text_of(program, instruction.destination));
   for (int i = 0; i < instruction.source_count; ++i)

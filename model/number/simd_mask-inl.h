@@ -16,13 +16,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::HWY_NAMESPACE {
 
-// As one word: bytes would have to be put together. For up to 16 lanes.
+// As one word: bytes would have to be put together.
 static_assert(std::endian::native == std::endian::little);
 template <class D>
 using MaskBits = std::conditional_t<(hwy::HWY_NAMESPACE::MaxLanes(D{}) > 8), std::uint16_t, std::uint8_t>;
 
 template <class D>
 HWY_INLINE std::uint64_t bits_of(D lanes, hwy::HWY_NAMESPACE::Mask<D> mask) {
+  static_assert(hwy::HWY_NAMESPACE::MaxLanes(D{}) <= 16);
   std::uint8_t bytes[8] = {};
   hwy::HWY_NAMESPACE::StoreMaskBits(lanes, mask, bytes);
   MaskBits<D> bits;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,7 +10,7 @@
 
 namespace splatscope::raster {
 
-// Of vertices, [attribute][component][vertex]; of what no draw reads there may be none.
+// Of vertices, [attribute][component][vertex]; empty where the draw does not read it.
 using VertexAttributes = std::array<std::array<std::vector<float>, 4>, primitive::kAttributes>;
 
 // A piece of a triangle: mostly the triangle itself.
@@ -29,10 +30,10 @@ struct FragmentsOfPiece {
   std::size_t first, end;
 };
 
-// Appends the places x + 65536 y in the frame of the pixels that passed in rows of quads
-// `first_row`..`end_row`-1 (0 to 4) of windows side by side, quad by quad through all windows and then row by
-// row, behind the first `count` of `places`. What lies behind them is overwritten. Returns how many there are
-// then, at most kFragments.
+// Appends the places x + 65536 y in the frame (at most 4096 a side) of the pixels that passed in rows of
+// quads `first_row`..`end_row`-1 (0 to 4) of windows side by side, quad by quad through all windows and then
+// row by row, behind the first `count` of `places`. What lies behind them is overwritten. Returns how many
+// there are then, at most kFragments.
 std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
                           std::size_t count, std::span<std::uint32_t, kFragmentStride> places);
 

@@ -87,6 +87,10 @@ struct Window {
                                                                  4, 5, 4, 5, 6, 7, 6, 7};
   alignas(64) static constexpr std::int32_t kLaneY[kRowLanes] = {0, 0, 1, 1, 0, 0, 1, 1,
                                                                  0, 0, 1, 1, 0, 0, 1, 1};
+  // Pixels of one row of four quads, 0 to 3.
+  static constexpr std::uint32_t row(std::uint64_t pixels, unsigned row) {
+    return static_cast<std::uint32_t>(pixels >> kRowLanes * row & 0xffffu);
+  }
   static constexpr int x_of(unsigned bit) { return static_cast<int>((bit >> 1 & 6) | (bit & 1)); }
   static constexpr int y_of(unsigned bit) { return static_cast<int>((bit >> 3 & 6) | (bit >> 1 & 1)); }
 };

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -231,9 +232,13 @@ TEST(Raster, EverySimdTargetGivesTheSameBits) {
       drawn.depth.assign(std::size_t{kViewport.width} * kViewport.height,
                          output::quantize_depth(0.9f, format));
       for (const WindowTriangle& t : triangles) {
-        drawn.setups.push_back(set_up(t, 4, driver_rounding(4)));
-        for (const Window& window :
-             windows_of(drawn.setups.back(), {drawn.depth, kViewport, format, true, true}))
+        TriangleSetup setup = set_up(t, 4, driver_rounding(4));
+        const std::size_t number = drawn.setups.size();
+        drawn.setups.push_back(setup);
+        // What a plane beside its corners can say: no number, or a zero with a sign.
+        if (number % 16 == 3) setup.depth.dx = std::numeric_limits<float>::quiet_NaN();
+        if (number % 16 == 7) setup.depth = {-0.0f, -0.0f, -0.0f}, setup.nearest = 0;
+        for (const Window& window : windows_of(setup, {drawn.depth, kViewport, format, true, true}))
           drawn.windows.push_back(window);
       }
       if (!first) first = drawn;

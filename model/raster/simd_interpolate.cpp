@@ -24,10 +24,10 @@ HWY_INLINE V at(const Plane& plane, V x, V y) {
                  hn::Add(hn::Mul(hn::Set(F{}, plane.dx), x), hn::Mul(hn::Set(F{}, plane.dy), y)));
 }
 
-HWY_INLINE VU column_of(VU place) {
+HWY_INLINE VU x_of(VU place) {
   return hn::And(place, hn::Set(U{}, 0xffffu));
 }
-HWY_INLINE VU row_of(VU place) {
+HWY_INLINE VU y_of(VU place) {
   return hn::ShiftRight<16>(place);
 }
 
@@ -42,7 +42,7 @@ HWY_INLINE void interpolate_piece(const FragmentsOfPiece& fragments,
   };
   for (std::size_t i = fragments.first; i < fragments.end; i += hn::Lanes(F{})) {
     const VU place = hn::LoadU(U{}, places.data() + i);
-    const V x = from(column_of(place), setup.left), y = from(row_of(place), setup.top);
+    const V x = from(x_of(place), setup.left), y = from(y_of(place), setup.top);
     const V inverse_scale = hn::Div(hn::Set(F{}, 1.0f), at(setup.scale, x, y));
     const V b1 = hn::Mul(at(setup.weight1, x, y), inverse_scale);
     const V b2 = hn::Mul(at(setup.weight2, x, y), inverse_scale);
@@ -66,8 +66,8 @@ void interpolate(std::span<const FragmentsOfPiece> pieces, std::span<const primi
   for (const FragmentsOfPiece& fragments : pieces) interpolate_piece(fragments, used, vertices, places, out);
   for (std::size_t i = 0; i < count; i += hn::Lanes(U{})) {
     const VU place = hn::LoadU(U{}, places.data() + i);
-    const VU row = hn::Mul(row_of(place), hn::Set(U{}, width));
-    hn::StoreU(hn::Add(row, column_of(place)), U{}, pixels.data() + i);
+    const VU row = hn::Mul(y_of(place), hn::Set(U{}, width));
+    hn::StoreU(hn::Add(row, x_of(place)), U{}, pixels.data() + i);
   }
 }
 
@@ -83,17 +83,6 @@ constexpr RowPlaces make_row_places() {
 }
 constexpr RowPlaces kRowPlaces = make_row_places();
 
-#if HWY_TARGET == HWY_SCALAR
-
-std::size_t append_lanes(std::uint32_t passed, std::size_t first_lane, std::uint32_t origin,
-                         std::uint32_t* out) {
-  if (passed == 0) return 0;
-  *out = kRowPlaces.of[first_lane] + origin;
-  return 1;
-}
-
-#else
-
 HWY_INLINE std::size_t append_lanes(std::uint32_t passed, std::size_t first_lane, std::uint32_t origin,
                                     std::uint32_t* out) {
   const VU places = hn::Add(hn::Load(U{}, kRowPlaces.of + first_lane), hn::Set(U{}, origin));
@@ -101,18 +90,17 @@ HWY_INLINE std::size_t append_lanes(std::uint32_t passed, std::size_t first_lane
   return hwy::PopCount(passed);
 }
 
-#endif
-
 std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
                           std::size_t count, std::span<std::uint32_t, kFragmentStride> places) {
-  constexpr std::uint32_t kLaneBits = 0xffffu >> (Window::kRowLanes - hn::MaxLanes(F{}));
+  constexpr std::size_t kLanes = hn::MaxLanes(U{});
+  constexpr std::uint32_t kLaneBits = 0xffffu >> (Window::kRowLanes - kLanes);
   for (unsigned row = first_row; row < end_row; ++row) {
     for (const Window& window : windows) {
       const auto origin =
           static_cast<std::uint32_t>(window.x + ((window.y + 2 * static_cast<int>(row)) << 16));
-      const auto passed = static_cast<std::uint32_t>(window.passed >> 16 * row & 0xffffu);
+      const std::uint32_t passed = Window::row(window.passed, row);
       // Also where none passed: that cannot be foreseen.
-      for (std::size_t lane = 0; lane < Window::kRowLanes; lane += hn::Lanes(F{}))
+      for (std::size_t lane = 0; lane < Window::kRowLanes; lane += kLanes)
         count += append_lanes(passed >> lane & kLaneBits, lane, origin, places.data() + count);
     }
   }

@@ -98,7 +98,7 @@ HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
   return mask;
 }
 
-// a > b ? a : b, and a < b ? a : b: b where a is no number, as x86 has it.
+// a > b ? a : b, and a < b ? a : b: b where a is no number or both are zeros, as x86 has it.
 #if HWY_ARCH_X86_64 && HWY_TARGET != HWY_EMU128
 HWY_INLINE VF greater(VF a, VF b) {
   return hn::Max(a, b);
@@ -177,29 +177,28 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
   // In [0, 1] like what is stored; the lesser first, so that zero has no sign.
   const VF nearest = hn::Set(F{}, setup.nearest > 0 ? std::min(setup.nearest, 1.0f) : 0.0f),
            furthest = hn::Set(F{}, setup.furthest > 0 ? std::min(setup.furthest, 1.0f) : 0.0f);
-  // Not read again behind every store.
-  const bool tests = target.test, writes = target.write, whole = target.format != DepthFormat::float32;
+  // Copies: for all that the compiler knows, a store to the depth buffer changes `target`.
+  const bool tests = target.test, writes = target.write, fixed_point = target.format != DepthFormat::float32;
   const VF levels = hn::Set(F{}, target.format == DepthFormat::z16 ? 0x1p16f : 0x1p24f);
-  // The part of x, of which blocks have kParts.
+  // A row of four quads is kParts registers wide; y is the same in each.
   constexpr std::size_t kParts = kRowLanes / kLanes;
-  VF along_x[kParts], y[kParts];
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const auto lanes = [](const std::int32_t* from, int offset) HWY_ATTR {
-      return hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, from), hn::Set(I{}, offset)));
-    };
-    along_x[part] = hn::Mul(dx, lanes(Window::kLaneX + part * kLanes, window.x - setup.left));
-    y[part] = lanes(Window::kLaneY + part * kLanes, window.y - setup.top);
-  }
+  const auto from = [](const std::int32_t* lanes, int offset) HWY_ATTR {
+    return hn::ConvertTo(F{}, hn::Add(hn::Load(I{}, lanes), hn::Set(I{}, offset)));
+  };
+  const VF y = from(Window::kLaneY, window.y - setup.top);
+  VF along_x[kParts];
+  for (std::size_t part = 0; part < kParts; ++part)
+    along_x[part] = hn::Mul(dx, from(Window::kLaneX + part * kLanes, window.x - setup.left));
   std::uint64_t passed = 0;
   for (std::size_t block = 0; block < kBlocks; ++block) {
     const std::size_t bit = block * kLanes, lane = bit % kRowLanes;
     const std::uint64_t covered = window.covered >> bit & (~std::uint64_t{0} >> (64 - kLanes));
     if (covered == 0) continue;
     const VF row = hn::Set(F{}, static_cast<float>(bit / kRowLanes * 2));
-    const VF along_y = hn::Mul(dy, hn::Add(y[lane / kLanes], row));
+    const VF along_y = hn::Mul(dy, hn::Add(y, row));
     const VF z = hn::Add(origin, hn::Add(along_x[lane / kLanes], along_y));
     const VF within = lesser(greater(z, nearest), furthest);
-    const auto depth = whole ? quantize(within, levels) : hn::BitCast(U{}, within);
+    const auto depth = fixed_point ? quantize(within, levels) : hn::BitCast(U{}, within);
     const auto quads = hn::TableLookupLanes(old[block], to_quads);
     auto pass = mask_of(U{}, covered);
     if (tests) pass = hn::AndNot(hn::Gt(depth, quads), pass);

@@ -188,7 +188,8 @@ HWY_INLINE V reciprocal_sqrt(V a) {
   return hn::IfThenElse(hn::Eq(exponent, hn::Zero(U{})), set(0x7f800000), result);
 }
 
-// Reads of one operand for the vertices from `i`; where nothing is negated there is nothing to do but that.
+// Reads of one operand for the vertices from `i`. kNegates: some source of the call is negated; without it a
+// load folds into what uses it.
 template <bool kNegates>
 struct Reader {
   explicit Reader(const Operand& operand) : operand(operand), sign(set(operand.sign)) {}
@@ -307,15 +308,15 @@ HWY_INLINE void one_reciprocal(const Call& call, std::size_t count, Function fun
   *call.special |= special;
 }
 
-template <std::size_t kTerms, typename Sources>
-HWY_INLINE V dot(const Sources& s, std::size_t i, V& least) {
+template <std::size_t kTerms, bool kNegates>
+HWY_INLINE V dot(const Sources<kNegates>& s, std::size_t i, V& least) {
   VF products[kTerms];
   for (std::size_t k = 0; k < kTerms; ++k) products[k] = hn::Mul(s.a.number(k, i), s.b.number(k, i));
   return sum(products, least);
 }
 
 template <bool kNegates>
-void run_reading(const Call& call, int vertices) {
+void run_with_signs(const Call& call, int vertices) {
   const std::size_t lanes = hn::Lanes(U{});
   const std::size_t count = (static_cast<std::size_t>(vertices) + lanes - 1) / lanes * lanes;
   const Sources<kNegates> s(call);
@@ -370,9 +371,9 @@ void run_reading(const Call& call, int vertices) {
 void run_nv20(const Call& call, int vertices) {
   const auto negates = [](const Operand& operand) { return operand.sign != 0; };
   if (std::ranges::any_of(std::span(call.sources).first(call.source_count), negates)) {
-    run_reading<true>(call, vertices);
+    run_with_signs<true>(call, vertices);
   } else {
-    run_reading<false>(call, vertices);
+    run_with_signs<false>(call, vertices);
   }
 }
 

@@ -114,8 +114,10 @@ Call resolve(const Step& step, Workspace& workspace, const InputBatch& in, Outpu
 void run_address_step(const Step& step, Workspace& workspace, const InputBatch& in, int count);
 
 // All four components of one result in the given arithmetic: the scalar reference. Components that do not
-// belong to the operation's result are unspecified.
-Vec4 evaluate(Operation operation, Arithmetic arithmetic, const std::array<Vec4, 3>& sources);
+// belong to the operation's result are unspecified. Never inlined, also when files are linked as one: callers
+// set the processor's mode (processor_mode.h).
+[[gnu::noinline]] Vec4 evaluate(Operation operation, Arithmetic arithmetic,
+                                const std::array<Vec4, 3>& sources);
 
 // One call for vertices first..last-1 by `evaluate`, in the processor's default mode whatever the mode is.
 void run_scalar(const Call& call, Arithmetic arithmetic, int first, int last);

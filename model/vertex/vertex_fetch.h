@@ -24,7 +24,7 @@ void fetch(std::span<const VertexAttribute> attributes, std::span<const std::byt
 
 // The same; but inputs in which the vertices of each group (kGroup) agree go into a lane a group of `grouped`
 // instead. Returns these inputs (bit n: v<n>), those that no attribute feeds among them; 0 where the vertices
-// are no whole number of groups. Both batches have had their defaults filled in.
+// are no whole number of groups. Both batches have had the defaults of what is read filled in.
 unsigned fetch_grouped(std::span<const VertexAttribute> attributes, std::span<const std::byte> buffer,
                        std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers, InputBatch& out,
                        InputBatch& grouped);

@@ -57,7 +57,7 @@ class VertexProgram {
     Bound(Bound&&) noexcept;
     Bound& operator=(Bound&&) noexcept;
 
-    // What the program reads of it is to be filled in, in all lanes.
+    // What the program reads is to be filled in, up to whole SIMD registers of lanes.
     InputBatch& input();
     // Inputs in which the vertices of each group agree, a lane a group.
     InputBatch& grouped_input();
