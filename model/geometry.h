@@ -22,7 +22,7 @@ struct BatchTriangle {
 
 class GeometryBatch {
  public:
-  static constexpr std::size_t kVertices = 512;
+  static constexpr std::size_t kVertices = 1024;
 
   GeometryBatch(const DrawBindings& bindings, const RenderOptions& options,
                 const primitive::Viewport& viewport);
