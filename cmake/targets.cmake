@@ -61,8 +61,8 @@ function(splatscope_library folder)
 endfunction()
 
 # Functions of FOLDER call each other across its files once a triangle: the program and the benchmarks are linked as if
-# it were one file (by GCC). Tests and fuzzers take the plain half of its objects, with -fno-lto: they link at once; those in tests/ run
-# the program as it is linked.
+# it were one file (by GCC). Tests and fuzzers take the plain half of its objects, with -fno-lto: they link at once;
+# those in tests/ run the program as it is linked.
 function(splatscope_link_as_one folder)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT SPLATSCOPE_SANITIZE AND NOT SPLATSCOPE_COVERAGE)
     target_compile_options(splatscope_${folder} PRIVATE -flto=auto -ffat-lto-objects)

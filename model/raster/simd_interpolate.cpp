@@ -71,21 +71,11 @@ void interpolate(std::span<const FragmentsOfPiece> pieces, std::span<const primi
   }
 }
 
-// The places of a row of quads from its first pixel.
-struct RowPlaces {
-  alignas(64) std::uint32_t of[Window::kRowLanes];
-};
-constexpr RowPlaces make_row_places() {
-  RowPlaces places{};
-  for (std::size_t lane = 0; lane < Window::kRowLanes; ++lane)
-    places.of[lane] = static_cast<std::uint32_t>(Window::kLaneX[lane] + (Window::kLaneY[lane] << 16));
-  return places;
-}
-constexpr RowPlaces kRowPlaces = make_row_places();
-
 HWY_INLINE std::size_t append_lanes(std::uint32_t passed, std::size_t first_lane, std::uint32_t origin,
                                     std::uint32_t* out) {
-  const VU places = hn::Add(hn::Load(U{}, kRowPlaces.of + first_lane), hn::Set(U{}, origin));
+  const auto x = hn::Load(I{}, Window::kLaneX + first_lane), y = hn::Load(I{}, Window::kLaneY + first_lane);
+  const VU from_origin = hn::BitCast(U{}, hn::Or(x, hn::ShiftLeft<16>(y)));
+  const VU places = hn::Add(from_origin, hn::Set(U{}, origin));
   hn::StoreU(hn::Compress(places, splatscope::HWY_NAMESPACE::mask_of(U{}, passed)), U{}, out);
   return hwy::PopCount(passed);
 }

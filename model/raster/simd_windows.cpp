@@ -174,7 +174,7 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
   }
   const VF origin = hn::Set(F{}, setup.depth.origin), dx = hn::Set(F{}, setup.depth.dx),
            dy = hn::Set(F{}, setup.depth.dy);
-  // In [0, 1] like what is stored; the lesser first, so that zero has no sign.
+  // In [0, 1] like what is stored; what is not positive becomes a zero without a sign.
   const VF nearest = hn::Set(F{}, setup.nearest > 0 ? std::min(setup.nearest, 1.0f) : 0.0f),
            furthest = hn::Set(F{}, setup.furthest > 0 ? std::min(setup.furthest, 1.0f) : 0.0f);
   // Copies: for all that the compiler knows, a store to the depth buffer changes `target`.
