@@ -23,13 +23,6 @@ constexpr std::size_t kBatchesInFlight = 4;
 // turn to be written.
 constexpr std::int64_t kMostPixelsKept = 1 << 18;
 
-// Colours of fragments that wait to be written, in order.
-struct ShadedFragments {
-  alignas(64) float colors[4][FragmentPipe::kCapacity];
-  std::uint32_t pixels[FragmentPipe::kCapacity];
-  std::size_t count = 0;
-};
-
 // Windows of one piece of a triangle in one band.
 struct Band {
   std::size_t piece = 0;
@@ -37,6 +30,8 @@ struct Band {
   std::size_t count = 0;   // of windows
   std::size_t passed = 0;  // of their pixels
 };
+
+using Windows = std::span<raster::Window, raster::kMaxWindows>;
 
 // A batch of triangles on its way.
 class Batch {
@@ -54,16 +49,27 @@ class Batch {
     at_once = write_at_once;
     own_work.quads.clear();  // and keep their memory
     own_work.texel_blocks.clear();
-    windows.clear();
+    window_count_ = 0;
     bands.clear();
-    shaded_count_ = 0;
+    pixels_.clear();
   }
 
+  // Room for the windows of one band; they are kept once it is added.
+  Windows room() {
+    if (windows_.size() < window_count_ + raster::kMaxWindows)
+      windows_.resize(2 * window_count_ + raster::kMaxWindows);
+    return std::span(windows_).subspan(window_count_).first<raster::kMaxWindows>();
+  }
+  void add(const Band& band) {
+    bands.push_back(band);
+    window_count_ += band.count;
+  }
+  std::span<const raster::Window> windows() const { return std::span(windows_).first(window_count_); }
+
   void write() {
-    for (const ShadedFragments& fragments : std::span(shaded_).first(shaded_count_)) {
-      const auto& [r, g, b, a] = fragments.colors;
-      output::write_colors({r, g, b, a}, {fragments.pixels, fragments.count}, state_, frame_);
-    }
+    if (packs_) return output::write_packed(packed_, pixels_, state_, frame_);
+    const auto& [r, g, b, a] = colors_;
+    output::write_colors({r.data(), g.data(), b.data(), a.data()}, pixels_, state_, frame_);
   }
 
   // Orders its last stage before the next filling: oneTBB counts the tokens, but its count releases nothing.
@@ -75,23 +81,29 @@ class Batch {
   DrawWork& work;
   FragmentPipe pipe;
   bool at_once = false;  // depth, shading and writing together, when its turn to be written comes
-  std::vector<raster::Window> windows;
   std::vector<Band> bands;
 
  private:
   void take(const FragmentPipe::Colors& colors, std::span<const std::uint32_t> pixels) {
     if (at_once) return output::write_colors(colors, pixels, state_, frame_);
-    if (shaded_count_ == shaded_.size()) shaded_.emplace_back();
-    ShadedFragments& fragments = shaded_[shaded_count_++];
-    for (std::size_t c = 0; c < 4; ++c) std::copy_n(colors[c], pixels.size(), fragments.colors[c]);
-    std::ranges::copy(pixels, fragments.pixels);
-    fragments.count = pixels.size();
+    const std::size_t first = pixels_.size();
+    pixels_.insert(pixels_.end(), pixels.begin(), pixels.end());
+    const auto room = [&](auto& values) {
+      values.resize(pixels_.size() + output::kLanes);
+      return values.data() + first;
+    };
+    if (packs_) return output::pack_colors(colors, pixels.size(), state_, room(packed_));
+    for (std::size_t c = 0; c < 4; ++c) std::copy_n(colors[c], pixels.size(), room(colors_[c]));
   }
 
   const DrawState& state_;
   Frame& frame_;
-  std::vector<ShadedFragments> shaded_;
-  std::size_t shaded_count_ = 0;
+  std::vector<raster::Window> windows_;  // of all bands
+  std::size_t window_count_ = 0;
+  // What is shaded and waits to be written, in order: each fragment's pixel, and its colour in one form.
+  const bool packs_ = output::packs(state_, frame_.formats);
+  std::vector<std::uint32_t> pixels_, packed_;
+  std::array<std::vector<float>, 4> colors_;
   std::atomic<bool> handed_back_ = true;
 };
 
@@ -124,11 +136,8 @@ class DrawStages {
       waiting_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    rasterize(batch, [&](const Band& band) {
-      batch.bands.push_back(band);
-      const auto windows = std::span(windows_).first(band.count);
-      batch.windows.insert(batch.windows.end(), windows.begin(), windows.end());
-    });
+    rasterize(
+        batch, [&] { return batch.room(); }, [&](const Band& band) { batch.add(band); });
   }
 
   // Any number of batches at a time.
@@ -136,7 +145,7 @@ class DrawStages {
     if (batch.at_once) return;
     std::size_t first = 0;
     for (const Band& band : batch.bands) {
-      push(batch, band, std::span(batch.windows).subspan(first, band.count));
+      push(batch, band, batch.windows().subspan(first, band.count));
       first += band.count;
     }
     batch.pipe.flush();
@@ -167,7 +176,9 @@ class DrawStages {
   }
 
   void do_at_once(Batch& batch) {
-    rasterize(batch, [&](const Band& band) { push(batch, band, std::span(windows_).first(band.count)); });
+    rasterize(
+        batch, [&] { return Windows(windows_); },
+        [&](const Band& band) { push(batch, band, std::span(windows_).first(band.count)); });
     batch.pipe.flush();
   }
 
@@ -192,9 +203,9 @@ class DrawStages {
   }
 
   // Coverage and depth; take(band) gets each band in which there is something to shade or to note, with its
-  // windows in `windows_`.
-  template <typename Take>
-  void rasterize(Batch& batch, Take take) {
+  // windows in the room() that was asked for last.
+  template <typename Room, typename Take>
+  void rasterize(Batch& batch, Room room, Take take) {
     counters_.vertices += batch.geometry.shaded_vertices.size();
     counters_.triangles += batch.geometry.triangles.size();
     std::size_t first = 0;
@@ -208,7 +219,7 @@ class DrawStages {
         const raster::TriangleSetup& setup = batch.geometry.setup(piece);
         if (culled(setup)) continue;
         ++work.pieces;
-        rasterize(piece, setup, work, take);
+        rasterize(piece, setup, work, room, take);
       }
       first += triangle.pieces;
       if (work.pieces == 0 && triangle.pieces != 0) work.outcome = TriangleOutcome::back_facing;
@@ -219,13 +230,15 @@ class DrawStages {
     }
   }
 
-  template <typename Take>
-  void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Take take) {
+  template <typename Room, typename Take>
+  void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Room room,
+                 Take take) {
     if (!setup.covers) return;
     const bool noted = notes_quads();
     if (record_ != Record::nothing) work.tile_count += raster::tiles_touched(setup);
     for (int y = setup.top & ~1; y < setup.bottom; y += raster::kWindow) {
-      const raster::BandCounts counts = raster::rasterize_band(setup, depth_, y, windows_);
+      const Windows windows = room();
+      const raster::BandCounts counts = raster::rasterize_band(setup, depth_, y, windows);
       counters_.fragments += counts.covered;
       counters_.fragments_passed += counts.passed;
       work.quad_count += counts.quads;
@@ -233,8 +246,8 @@ class DrawStages {
       if (noted ? counts.windows != 0 : state_.color_write && counts.passed != 0)
         take(Band{piece, noted, counts.windows, counts.passed});
       if (!noted && tiles_)
-        tiles_->note(std::span(windows_).first(counts.windows),
-                     static_cast<std::uint32_t>(work_.triangles.size()), work_.tiles_written);
+        tiles_->note(windows.first(counts.windows), static_cast<std::uint32_t>(work_.triangles.size()),
+                     work_.tiles_written);
     }
   }
 

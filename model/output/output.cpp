@@ -5,7 +5,6 @@
 
 #include "model/number/frame_value.h"
 #include "model/output/blend_factor.h"
-#include "model/output/simd_blend.h"
 
 namespace splatscope::output {
 namespace {
@@ -49,16 +48,32 @@ double offset_at(std::uint32_t pixel, const DrawState& state, const Frame& frame
   return rounding_offset(frame.formats.frame_rounding, pixel % frame.width, pixel / frame.width);
 }
 
-// Whether a whole destination is added to what depends on the source alone: as splatting blends.
-bool adds(const DrawState& state) {
-  return state.destination_factor == BlendFactor::one && state.source_factor <= BlendFactor::inv_src_alpha;
+// By packs().
+void pack_and_write(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
+                    const DrawState& state, Frame& frame) {
+  constexpr std::size_t kAtOnce = 256;
+  alignas(64) std::array<std::uint32_t, kAtOnce> packed;
+  for (std::size_t first = 0; first < pixels.size(); first += kAtOnce) {
+    const auto some = pixels.subspan(first, std::min(pixels.size() - first, kAtOnce));
+    const auto& [r, g, b, a] = colors;
+    pack_colors({r + first, g + first, b + first, a + first}, some.size(), state, packed.data());
+    write_packed(packed, some, state, frame);
+  }
 }
 
 }  // namespace
 
+bool packs(const DrawState& state, const NumberFormats& formats) {
+  const bool adds =
+      state.destination_factor == BlendFactor::one && state.source_factor <= BlendFactor::inv_src_alpha;
+  return formats.frame == FrameFormat::unorm8 &&
+         (!state.blend || (adds && formats.frame_rounding == FrameRounding::nearest));
+}
+
 void write_colors(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
                   const DrawState& state, Frame& frame) {
   const NumberFormats& formats = frame.formats;
+  if (packs(state, formats)) return pack_and_write(colors, pixels, state, frame);
   if (formats.frame != FrameFormat::unorm8) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       Vec4& stored = frame.colors32[pixels[i]];
@@ -70,10 +85,6 @@ void write_colors(const std::array<const float*, 4>& colors, std::span<const std
     return;
   }
   const bool nearest = formats.frame_rounding == FrameRounding::nearest;
-  if (!state.blend || (adds(state) && nearest)) {
-    add_unorm8(colors, pixels, state, frame.colors8);
-    return;
-  }
   const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Vec4 color{colors[0][i], colors[1][i], colors[2][i], colors[3][i]};

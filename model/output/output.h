@@ -35,6 +35,16 @@ void receive_colors(float* values, std::size_t count, ColorFormat format);
 void write_colors(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
                   const DrawState& state, Frame& frame);
 
+// The same in two steps where a draw packs(): into an 8-bit frame without blending, or with a destination
+// factor of one and a source factor that does not depend on the destination. Under the one rounding of such a
+// blend the destination is added whole, so all but that addition may be done at any time, in any order.
+bool packs(const DrawState& state, const NumberFormats& formats);
+// What is added to each pixel, or takes its place: r in the lowest byte. `packed` has room like the colours.
+void pack_colors(const std::array<const float*, 4>& colors, std::size_t count, const DrawState& state,
+                 std::uint32_t* packed);
+void write_packed(std::span<const std::uint32_t> packed, std::span<const std::uint32_t> pixels,
+                  const DrawState& state, Frame& frame);
+
 // What the host does to the frame that it has read back: r, g and b divided by the summed weights in alpha,
 // alpha set to 1. Pixels of weight 0 stay as they are. Ren 2002, section 7.
 void normalize(Frame& frame);

@@ -128,6 +128,16 @@ TEST(Output, ReceivesColors) {
   });
 }
 
+TEST(Output, ReceivesEachColorOfEightBitsAsItIs) {
+  std::array<float, 256> given;
+  for (int n = 0; n < 256; ++n) given[static_cast<std::size_t>(n)] = static_cast<float>(n) / 255.0f;
+  testing::on_each_simd_target([&] {
+    std::array<float, 256> received = given;
+    receive_colors(received.data(), received.size(), ColorFormat::unorm8);
+    EXPECT_EQ(received, given);
+  });
+}
+
 TEST(Output, SaturatesInEightBits) {
   DrawState state;
   state.blend = true;

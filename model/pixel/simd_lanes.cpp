@@ -22,8 +22,7 @@ HWY_INLINE V set(float value) {
 // registers.h's, to the sign of zero.
 HWY_INLINE V in_range(V value, V low, V high) {
   const V number = hn::IfThenZeroElse(hn::IsNaN(value), value);
-  const V raised = hn::IfThenElse(hn::Lt(number, low), low, number);
-  return hn::IfThenElse(hn::Lt(high, raised), high, raised);
+  return hn::Min(hn::Max(number, low), high);
 }
 
 template <typename Function>

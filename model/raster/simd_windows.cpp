@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "model/number/simd_integer-inl.h"
 #include "model/number/simd_mask-inl.h"
+#include "model/number/simd_steps-inl.h"
 #include "model/output/output.h"
 #include "model/raster/raster.h"
 
@@ -98,23 +98,6 @@ HWY_INLINE std::uint64_t cover(const TriangleSetup& setup, int x, int y) {
   return mask;
 }
 
-// a > b ? a : b, and a < b ? a : b: b where a is no number or both are zeros, as x86 has it.
-#if HWY_ARCH_X86_64 && HWY_TARGET != HWY_EMU128
-HWY_INLINE VF greater(VF a, VF b) {
-  return hn::Max(a, b);
-}
-HWY_INLINE VF lesser(VF a, VF b) {
-  return hn::Min(a, b);
-}
-#else
-HWY_INLINE VF greater(VF a, VF b) {
-  return hn::IfThenElse(hn::Gt(a, b), a, b);
-}
-HWY_INLINE VF lesser(VF a, VF b) {
-  return hn::IfThenElse(hn::Lt(a, b), a, b);
-}
-#endif
-
 // Window z in [0, 1] as the depth buffer stores it: output::quantize_depth. `levels`: 2^n of a format of n
 // bits, which floor(z (2^n - 1) + 1/2) goes to.
 #if HWY_TARGET <= HWY_AVX3
@@ -197,7 +180,7 @@ HWY_INLINE std::uint64_t test_depth(const TriangleSetup& setup, const DepthTarge
     const VF row = hn::Set(F{}, static_cast<float>(bit / kRowLanes * 2));
     const VF along_y = hn::Mul(dy, hn::Add(y, row));
     const VF z = hn::Add(origin, hn::Add(along_x[lane / kLanes], along_y));
-    const VF within = lesser(greater(z, nearest), furthest);
+    const VF within = splatscope::HWY_NAMESPACE::within(z, nearest, furthest);
     const auto depth = fixed_point ? quantize(within, levels) : hn::BitCast(U{}, within);
     const auto quads = hn::TableLookupLanes(old[block], to_quads);
     auto pass = mask_of(U{}, covered);

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/number/simd_integer-inl.h"
+#include "model/number/simd_steps-inl.h"
 
 namespace splatscope::texture {
 // Of any depth. Read once a target, hence declared again.  NOLINTNEXTLINE(readability-redundant-declaration)
@@ -31,8 +31,8 @@ HWY_INLINE void places(const float* coordinates, std::uint32_t size, std::size_t
              last = hn::Set(F{}, static_cast<float>(size - 1));
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{})) {
     const auto scaled = hn::Mul(hn::LoadU(F{}, coordinates + i), texels);
-    const auto clamped = hn::IfThenElseZero(hn::Gt(scaled, zero), hn::Min(scaled, last));
-    hn::StoreU(splatscope::HWY_NAMESPACE::integer(clamped), I{}, out + i);
+    const auto within = splatscope::HWY_NAMESPACE::within(scaled, zero, last);
+    hn::StoreU(splatscope::HWY_NAMESPACE::integer(within), I{}, out + i);
   }
 }
 
@@ -53,7 +53,7 @@ HWY_INLINE void look_up(const Texture& texture, const std::int32_t* x, const std
   for (std::size_t i = 0; i < count; ++i) texels[i] = texture.texels[index[i]];
   alignas(64) float values[kAtOnce];
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{}))
-    hn::Store(hn::Div(hn::ConvertTo(F{}, hn::Load(I{}, texels + i)), hn::Set(F{}, 255.0f)), F{}, values + i);
+    hn::Store(splatscope::HWY_NAMESPACE::over_255(hn::Load(I{}, texels + i)), F{}, values + i);
   std::copy_n(values, count, alpha);
 }
 

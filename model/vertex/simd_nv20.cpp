@@ -10,7 +10,7 @@
 #include <span>
 
 #include "model/number/nv20.h"
-#include "model/number/simd_integer-inl.h"
+#include "model/number/simd_steps-inl.h"
 #include "model/vertex/steps.h"
 
 HWY_BEFORE_NAMESPACE();
