@@ -1,10 +1,11 @@
 #include "model/geometry.h"
 
-#include <hwy/cache_control.h>
-
 #include <algorithm>
+#include <bit>
 #include <cstring>
+#include <functional>
 #include <iterator>
+#include <numeric>
 
 #include "model/output/output.h"
 #include "model/vertex/vertex_fetch.h"
@@ -12,7 +13,7 @@
 namespace splatscope {
 namespace {
 
-constexpr std::uint32_t kCorners = 3;
+constexpr std::uint32_t kCorners = 3, kQuad = 4, kQuadIndices = 6;
 constexpr std::size_t kIndices = 1 << 16;
 constexpr std::uint32_t kManyNumbers = 1u << 31;  // more than that are not given out before a draw
 
@@ -40,8 +41,8 @@ void GeometryBatch::clear() {
   triangles.clear();
   piece_corners_.clear();
   each_attribute([](std::vector<float>& values, std::size_t, std::size_t) { values.resize(kVertices); });
+  only_quads = true;
   clipped_corners_ = 0;
-  pixels_at_most_ = 0;
 }
 
 // function(values of the vertices, attribute, component) for those that the draw reads.
@@ -56,8 +57,22 @@ void GeometryBatch::each_attribute(Function function) {
 
 void GeometryBatch::process() {
   shade();
-  for (BatchTriangle& triangle : triangles) assemble(triangle);
-  set_up();
+  for (std::size_t first = 0; first < triangles.size(); first += raster::Corners::kCapacity) {
+    const std::size_t count = std::min(triangles.size() - first, raster::Corners::kCapacity);
+    // Of quads, triangles 2n and 2n + 1 are of vertices 4n to 4n + 3.
+    const auto outside = std::span(projected_.outside).subspan(2 * first, only_quads ? 2 * count : 0);
+    if (only_quads && std::reduce(outside.begin(), outside.end(), 0, std::bit_or{}) == 0) {
+      assemble_quads(first, first + count);
+    } else {
+      for (BatchTriangle& triangle : std::span(triangles).subspan(first, count)) assemble(triangle);
+    }
+    set_up();
+  }
+}
+
+vertex::NextVertices GeometryBatch::next_vertices(std::size_t first) const {
+  const std::size_t count = std::min<std::size_t>(vertices.size() - first, vertex::kBatch);
+  return {bindings_.vertices.bytes, bindings_.draw.vertex_stride, std::span(vertices).subspan(first, count)};
 }
 
 void GeometryBatch::shade() {
@@ -69,7 +84,7 @@ void GeometryBatch::shade() {
     const unsigned grouped = vertex::fetch_grouped(
         inputs_, bindings_.vertices.bytes, bindings_.draw.vertex_stride,
         std::span(vertices).subspan(first, count), program_.input(), program_.grouped_input());
-    program_.run(static_cast<int>(count), grouped);
+    program_.run(static_cast<int>(count), grouped, next_vertices(first + count));
     primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
                        first);
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(position[c], count, positions_[c].data() + first);
@@ -85,15 +100,36 @@ void GeometryBatch::shade() {
   }
 }
 
+// assemble() of triangles of which nothing is outside.
+void GeometryBatch::assemble_quads(std::size_t first_triangle, std::size_t end) {
+  const auto copy = [&](const std::vector<double>& vertices, auto& corners) {
+    for (std::size_t triangle = 0; triangle < end - first_triangle; triangle += 2) {
+      const double* const quad = vertices.data() + 2 * (first_triangle + triangle);
+      std::fill_n(corners[0] + triangle, 2, quad[0]);
+      std::copy_n(quad + 1, 2, corners[1] + triangle);
+      std::copy_n(quad + 2, 2, corners[2] + triangle);
+    }
+  };
+  copy(projected_.x, corners_.x);
+  copy(projected_.y, corners_.y);
+  copy(projected_.z, corners_.z);
+  copy(projected_.inverse_w, corners_.inverse_w);
+  for (std::size_t triangle = first_triangle; triangle < end; ++triangle) {
+    const auto [a, b, c] = triangles[triangle].vertices;
+    piece_corners_.push_back({a, b, c});
+  }
+  waiting_ = end - first_triangle;
+}
+
 void GeometryBatch::assemble(BatchTriangle& triangle) {
   const auto [a, b, c] = triangle.vertices;
   const auto& outside = projected_.outside;
   if (((outside[a] | outside[b] | outside[c]) & primitive::kNotPlain) != 0) return assemble_slowly(triangle);
   if ((outside[a] & outside[b] & outside[c]) != 0) {
     triangle.outcome = TriangleOutcome::outside_frustum;
+    triangle.pieces = 0;
     return;
   }
-  triangle.pieces = 1;
   add_piece(a, b, c);
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     const std::size_t i = triangle.vertices[corner];
@@ -116,10 +152,11 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
       primitive::assemble(corners, viewport_, bindings_.attributes, clipped_);
   triangle.outcome = assembled.outcome;
   triangle.pieces = static_cast<std::uint8_t>(assembled.pieces);
+  static_assert(kVertices + kTriangles * primitive::kMaxPieces * kCorners < 1u << 16);
   for (std::size_t piece = 0; piece < triangle.pieces; ++piece) {
-    std::array<std::uint32_t, kCorners> places;
+    std::array<std::uint16_t, kCorners> places;
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
-      places[corner] = static_cast<std::uint32_t>(kVertices) + clipped_corners_++;
+      places[corner] = static_cast<std::uint16_t>(kVertices + clipped_corners_++);
       each_attribute([&](std::vector<float>& values, std::size_t attribute, std::size_t c) {
         values.push_back(clipped_[piece][corner].attributes[attribute][c]);
       });
@@ -133,7 +170,7 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
 }
 
 // By value: three words written and then read as fewer, larger ones make a processor wait.
-void GeometryBatch::add_piece(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+void GeometryBatch::add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c) {
   if (waiting_ == raster::Corners::kCapacity) set_up();
   piece_corners_.push_back({a, b, c});
   ++waiting_;
@@ -146,8 +183,13 @@ void GeometryBatch::set_up() {
   raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits), !bindings_.attributes.empty(),
                  out);
   waiting_ = 0;
-  for (const raster::TriangleSetup& setup : out)
-    if (setup.covers) pixels_at_most_ += std::int64_t{setup.right - setup.left} * (setup.bottom - setup.top);
+}
+
+std::int64_t GeometryBatch::pixels_at_most() const {
+  std::int64_t pixels = 0;
+  for (const raster::TriangleSetup& setup : std::span(setups_).first(piece_corners_.size()))
+    if (setup.covers) pixels += std::int64_t{setup.right - setup.left} * (setup.bottom - setup.top);
+  return pixels;
 }
 
 std::array<std::uint16_t, 3> indices_at(const Buffer& indices, std::size_t first) {
@@ -168,12 +210,8 @@ void Indices::begin(const DrawBindings& bindings) {
   batch_ = shaded_ = 0;
 }
 
-// Its bytes come from memory while others are filled in.
-void Indices::prefetch(std::uint32_t vertex) const {
-  hwy::Prefetch(bindings_->vertices.bytes.data() + std::size_t{vertex} * bindings_->draw.vertex_stride);
-}
-
 void Indices::fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch) {
+  batch.only_quads = false;
   BatchTriangle& triangle = batch.triangles.emplace_back();
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     const std::uint32_t vertex = bindings_->draw.base_vertex + index[corner];
@@ -186,39 +224,62 @@ void Indices::fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryB
     if (known.batch < batch_) {
       known.batch = batch_ + static_cast<std::uint32_t>(batch.vertices.size());
       batch.vertices.push_back(vertex);
-      prefetch(vertex);
     }
     triangle.vertices[corner] = static_cast<std::uint16_t>(known.batch - batch_);
   }
 }
 
-// The same for two triangles at once where they are 0 1 2 and 0 2 3 of four vertices that follow one another,
-// as splats are drawn, and all four are new. False: they are not, and nothing has been done.
-bool Indices::fill_quad(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch) {
-  constexpr std::uint32_t kQuad = 4, kFewestEntries = kCorners;  // of the FIFO, that keep the first vertex
+// How many quads come next as splats are drawn: triangles 0 1 2 and 0 2 3 of four vertices that follow one
+// another, and those of the quad before; all of them new, and none more than `batch` takes.
+std::uint32_t Indices::quads_ahead(const GeometryBatch& batch) const {
+  static_assert(std::endian::native == std::endian::little);
+  if (cache_entries_ < kCorners)
+    return 0;  // a shorter FIFO has lost a quad's first vertex by its second triangle
   const Draw& draw = bindings_->draw;
-  const auto place = static_cast<std::uint32_t>(batch.vertices.size());
-  if (position_ + 2 * kCorners > draw.index_count || place + kQuad > GeometryBatch::kVertices ||
-      cache_entries_ < kFewestEntries)
-    return false;
-  const auto [a, b, c] = index;
-  const auto [d, e, f] = indices_at(bindings_->indices, draw.first_index + position_ + kCorners);
-  if (b != a + 1 || c != a + 2 || d != a || e != c || f != a + 3) return false;
-  const std::span<Known> known(&known_[a], kQuad);
-  if (std::ranges::any_of(known, [&](const Known& k) { return k.batch >= batch_ || is_in_fifo(k); }))
-    return false;
-  const std::uint32_t vertex = draw.base_vertex + a;
-  for (std::uint32_t i = 0; i < kQuad; ++i) {
-    known[i] = {shaded_ + i + 1, batch_ + place + i};
-    prefetch(vertex + i);
+  const std::byte* at =
+      bindings_->indices.bytes.data() + (std::size_t{draw.first_index} + position_) * sizeof(std::uint16_t);
+  std::uint16_t start;
+  std::memcpy(&start, at, sizeof start);
+  const std::size_t left = draw.index_count - position_;
+  const std::size_t most =
+      std::min({left / kQuadIndices, (GeometryBatch::kTriangles - batch.triangles.size()) / 2,
+                (kIndices - start) / kQuad, (GeometryBatch::kVertices - batch.vertices.size()) / kQuad});
+  const auto is_old = [this](const Known& known) { return known.batch >= batch_ || is_in_fifo(known); };
+  for (std::uint32_t quad = 0; quad < most; ++quad, at += kQuadIndices * sizeof start) {
+    std::uint64_t four;  // indices
+    std::uint32_t two;
+    std::memcpy(&four, at, sizeof four);
+    std::memcpy(&two, at + sizeof four, sizeof two);
+    const std::uint32_t first = start + quad * kQuad;
+    if (four != 0x0000'0002'0001'0000u + first * 0x0001'0001'0001'0001u ||
+        two != 0x0003'0002u + first * 0x0001'0001u ||
+        std::ranges::any_of(std::span(&known_[first], kQuad), is_old))
+      return quad;
   }
-  shaded_ += kQuad;
-  for (auto* vertices : {&batch.vertices, &batch.shaded_vertices})
-    vertices->insert(vertices->end(), {vertex, vertex + 1, vertex + 2, vertex + 3});
-  const auto at = [place](std::uint32_t i) { return static_cast<std::uint16_t>(place + i); };
-  batch.triangles.push_back({{at(0), at(1), at(2)}, 3});
-  batch.triangles.push_back({{at(0), at(2), at(3)}, 1});
-  return true;
+  return static_cast<std::uint32_t>(most);
+}
+
+// fill_triangle() of both triangles of quads_ahead().
+void Indices::fill_quads(std::uint32_t first_index, std::uint32_t quads, GeometryBatch& batch) {
+  const std::uint32_t count = quads * kQuad, first_vertex = bindings_->draw.base_vertex + first_index;
+  const auto place = static_cast<std::uint32_t>(batch.vertices.size());
+  const Known before{shaded_ + 1, batch_ + place};
+  const auto append = [](auto& values, std::uint32_t more) {
+    values.resize(values.size() + more);
+    return std::span(values).last(more);
+  };
+  const auto vertices = append(batch.vertices, count), shaded = append(batch.shaded_vertices, count);
+  const auto known = std::span(known_).subspan(first_index, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    known[i] = {before.inserted + i, before.batch + i};
+    vertices[i] = shaded[i] = first_vertex + i;
+  }
+  shaded_ += count;
+  for (std::uint32_t quad = 0; quad < quads; ++quad) {
+    const auto at = [&](std::uint32_t i) { return static_cast<std::uint16_t>(place + quad * kQuad + i); };
+    batch.triangles.push_back({{at(0), at(1), at(2)}, 3});
+    batch.triangles.push_back({{at(0), at(2), at(3)}, 1});
+  }
 }
 
 bool Indices::fill(GeometryBatch& batch) {
@@ -227,17 +288,19 @@ bool Indices::fill(GeometryBatch& batch) {
   const Draw& draw = bindings_->draw;
   while (position_ + kCorners <= draw.index_count) {
     const auto index = indices_at(bindings_->indices, draw.first_index + position_);
-    if (fill_quad(index, batch)) {
-      position_ += 2 * kCorners;
+    if (const std::uint32_t quads = quads_ahead(batch); quads != 0) {
+      fill_quads(index[0], quads, batch);
+      position_ += quads * kQuadIndices;
       continue;
     }
     std::size_t size = batch.vertices.size();  // with this triangle, at most
     for (const std::uint16_t corner : index) size += known_[corner].batch < batch_;
     // Exactly full, a batch of whole quads ends with one.
-    if (size > GeometryBatch::kVertices) break;
+    if (size > GeometryBatch::kVertices || batch.triangles.size() == GeometryBatch::kTriangles) break;
     fill_triangle(index, batch);
     position_ += kCorners;
   }
+  batch.next_vertices(0).prefetch(0, vertex::kBatch);
   return !batch.triangles.empty();
 }
 

@@ -16,13 +16,13 @@ namespace splatscope {
 struct BatchTriangle {
   std::array<std::uint16_t, 3> vertices{};  // places in the batch
   std::uint8_t new_vertices = 0;            // not found in the post-transform FIFO
-  std::uint8_t pieces = 0;                  // after clipping, before culling
+  std::uint8_t pieces = 1;                  // after clipping, before culling
   TriangleOutcome outcome = TriangleOutcome::drawn;
 };
 
 class GeometryBatch {
  public:
-  static constexpr std::size_t kVertices = 1024;
+  static constexpr std::size_t kVertices = 1024, kTriangles = 2560;  // at most
 
   GeometryBatch(const DrawBindings& bindings, const RenderOptions& options,
                 const primitive::Viewport& viewport);
@@ -31,25 +31,33 @@ class GeometryBatch {
   std::vector<std::uint32_t> vertices;         // vertex numbers, base_vertex added
   std::vector<std::uint32_t> shaded_vertices;  // of these, what the machine shades, in order
   std::vector<BatchTriangle> triangles;
+  bool only_quads = true;  // triangles 0 1 2 and 0 2 3 of each four vertices in turn
   void clear();
+
+  // Those from number `first` on that are shaded together.
+  vertex::NextVertices next_vertices(std::size_t first) const;
 
   // Shades the vertices, assembles and sets up the triangles.
   void process();
 
   // The pieces of all triangles, in order.
-  raster::Piece piece(std::size_t i) const { return {&setups_[i], piece_corners_[i]}; }
+  raster::Piece piece(std::size_t i) const {
+    const auto [a, b, c] = piece_corners_[i];
+    return {&setups_[i], {a, b, c}};
+  }
   const raster::VertexAttributes& attributes() const { return attributes_; }
   const raster::TriangleSetup& setup(std::size_t piece) const { return setups_[piece]; }
   // Of the rectangles of all pieces together.
-  std::int64_t pixels_at_most() const { return pixels_at_most_; }
+  std::int64_t pixels_at_most() const;
 
  private:
   void shade();
+  void assemble_quads(std::size_t first_triangle, std::size_t end);
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);
   template <typename Function>
   void each_attribute(Function function);
-  void add_piece(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  void add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c);
   void set_up();
 
   const DrawBindings& bindings_;
@@ -65,8 +73,7 @@ class GeometryBatch {
   raster::Corners corners_;                    // of the last pieces, which are not set up yet
   std::size_t waiting_ = 0;                    // how many these are
   std::vector<raster::TriangleSetup> setups_;  // of each piece; those behind the last one are left over
-  std::vector<std::array<std::uint32_t, 3>> piece_corners_;  // their places in `attributes_`
-  std::int64_t pixels_at_most_ = 0;
+  std::vector<std::array<std::uint16_t, 3>> piece_corners_;  // their places in `attributes_`
 };
 
 // Three indices of a buffer, from number `first`: those of a triangle of a list. They lie within it.
@@ -90,8 +97,8 @@ class Indices {
     return known.inserted != 0 && shaded_ - (known.inserted - 1) <= cache_entries_;
   }
   void fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch);
-  bool fill_quad(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch);
-  void prefetch(std::uint32_t vertex) const;
+  std::uint32_t quads_ahead(const GeometryBatch& batch) const;
+  void fill_quads(std::uint32_t first_index, std::uint32_t quads, GeometryBatch& batch);
 
   const DrawBindings* bindings_ = nullptr;
   std::uint32_t cache_entries_;

@@ -103,23 +103,16 @@ TEST(Render, TheTwoCullModesShareTheTrianglesBetweenThem) {
             all.triangles - all.triangles_outside - all.triangles_behind);
 }
 
+constexpr std::array<std::uint16_t, 6> kQuad = {0, 1, 2, 0, 2, 3};
+
 // What is shaded is what misses a FIFO of the given length, also where batches of the model end; the picture
 // does not depend on it.
-TEST(Render, ShadesWhatMissesTheVertexCache) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+void expect_fifo(std::span<const std::uint16_t> indices, std::mt19937& random) {
   std::uniform_real_distribution<float> anywhere(-1, 1);
   static std::array<float, 4 * 3000> corners;
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = i % 4 == 3 ? 1 : std::abs(anywhere(random));
   Trace trace = white_triangles(corners, CullMode::none);
-  std::array<std::uint16_t, 3 * 2000> indices;  // near one another, moving on; many of them quads
-  for (std::size_t i = 0; i < indices.size(); ++i)
-    indices[i] = static_cast<std::uint16_t>(i * 2970 / indices.size() + random() % 20);
-  constexpr std::array<std::uint16_t, 6> quad = {0, 1, 2, 0, 2, 3};
-  for (std::size_t i = 0; i + quad.size() < indices.size(); i += 3 * (1 + random() % 4))
-    for (std::size_t k = 1; k < quad.size(); ++k)
-      indices[i + k] = static_cast<std::uint16_t>(indices[i] + quad[k]);
+  trace.programs[0].text = "vs_1_1\nmov oPos, v0\nmov oD0, v0\n";
   trace.buffers[1] = buffer_of(indices);
   std::get<Draw>(trace.commands[0]).index_count = static_cast<std::uint32_t>(indices.size());
   RenderOptions options;
@@ -139,6 +132,52 @@ TEST(Render, ShadesWhatMissesTheVertexCache) {
     EXPECT_EQ(rendered.counters.vertices, shaded.size());
     EXPECT_EQ(rendered.frame, usual.frame);
   }
+}
+
+TEST(Render, ShadesWhatMissesTheVertexCache) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::array<std::uint16_t, 3 * 2000> indices;  // near one another, moving on; many of them quads
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    indices[i] = static_cast<std::uint16_t>(i * 2970 / indices.size() + random() % 20);
+  for (std::size_t i = 0; i + kQuad.size() < indices.size(); i += 3 * (1 + random() % 4))
+    for (std::size_t k = 1; k < kQuad.size(); ++k)
+      indices[i + k] = static_cast<std::uint16_t>(indices[i] + kQuad[k]);
+  expect_fifo(indices, random);
+}
+
+// Nothing but quads, which mostly follow one another: the model takes many of them at once.
+TEST(Render, ShadesWhatMissesTheVertexCacheInRunsOfQuads) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::vector<std::uint16_t> indices;
+  for (std::uint32_t first = 0, quad = 0; quad < 3000; ++quad) {
+    for (const std::uint16_t corner : kQuad) indices.push_back(static_cast<std::uint16_t>(first + corner));
+    first = random() % 100 == 0 ? static_cast<std::uint32_t>(random() % 2990) : (first + 4) % 2996;
+  }
+  expect_fifo(indices, random);
+}
+
+// So many triangles on three vertices, each cut into two by the near plane, that in one batch the corners of
+// the last one would have numbers of more than 16 bits, which would name others.
+TEST(Render, ManyTrianglesOnFewVertices) {
+  constexpr std::array<float, 12> kCut{-1, -1, 0.5f, 1, -1, 7, 0.5f, 1, 2, -1, -1, 1};
+  const Trace once = white_triangles(kCut, CullMode::none);
+  Trace often = once;
+  std::vector<std::uint16_t> indices;
+  constexpr std::uint16_t kTriangles = 10800;
+  for (std::uint16_t i = 0; i < 3 * kTriangles; ++i) indices.push_back(i % 3);
+  often.buffers[1] = buffer_of(indices);
+  auto& draw = std::get<Draw>(often.commands[0]);
+  draw.index_count = static_cast<std::uint32_t>(indices.size());
+  draw.state.depth_test = false;
+  RenderOptions options;
+  options.record = Record::nothing;
+  const Rendered rendered = render(often, options);
+  EXPECT_EQ(rendered.counters.triangles_clipped, kTriangles);
+  EXPECT_EQ(rendered.frame.colors8, render(once, options).frame.colors8);
 }
 
 // Enough triangles for several batches in flight, on top of one another, with the depth test: small ones,
@@ -163,10 +202,12 @@ Trace many_triangles() {
   return trace;
 }
 
-Rendered on_threads(const Trace& trace, std::size_t threads, Record record) {
+Rendered on_threads(const Trace& trace, std::size_t threads, Record record,
+                    FrameFormat frame = FrameFormat::unorm8) {
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
   RenderOptions options;
   options.record = record;
+  options.formats.frame = frame;
   return render(trace, options);
 }
 
@@ -176,12 +217,11 @@ std::vector<std::array<unsigned, 4>> listed(std::span<const QuadWork> quads) {
   return all;
 }
 
-TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
-  const Trace trace = many_triangles();
-  const Rendered one = on_threads(trace, 1, Record::everything);
+void expect_same_bits(const Trace& trace, FrameFormat frame) {
+  const Rendered one = on_threads(trace, 1, Record::everything, frame);
   for (const std::size_t threads : {1u, 2u, 4u}) {
-    const Rendered many = on_threads(trace, threads, Record::everything),
-                   frame_alone = on_threads(trace, threads, Record::nothing);
+    const Rendered many = on_threads(trace, threads, Record::everything, frame),
+                   frame_alone = on_threads(trace, threads, Record::nothing, frame);
     EXPECT_EQ(one.frame, many.frame);
     EXPECT_EQ(one.frame, frame_alone.frame);
     EXPECT_EQ(one.work[0].shaded_vertices, many.work[0].shaded_vertices);
@@ -189,6 +229,12 @@ TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
     EXPECT_EQ(one.counters.fragments_passed, many.counters.fragments_passed);
     EXPECT_EQ(one.counters.fragments_passed, frame_alone.counters.fragments_passed);
   }
+}
+
+// Of both forms in which colours wait for their turn.
+TEST(Render, AnyNumberOfThreadsGivesTheSameBits) {
+  for (const FrameFormat frame : {FrameFormat::unorm8, FrameFormat::float32})
+    expect_same_bits(many_triangles(), frame);
 }
 
 TEST(Render, EverySimdTargetGivesTheSameBits) {

@@ -17,9 +17,12 @@ template <typename Element, std::size_t kCount, typename Convert>
 void gather(const std::byte* first, std::uint32_t stride, std::span<const std::uint32_t> vertex_numbers,
             float (*out)[kBatch], Convert convert) {
   for (std::size_t lane = 0; lane < vertex_numbers.size(); ++lane) {
-    std::array<Element, kCount> elements;
-    std::memcpy(&elements, first + std::size_t{vertex_numbers[lane]} * stride, sizeof elements);
-    for (std::size_t c = 0; c < kCount; ++c) out[c][lane] = convert(elements[c]);
+    const std::byte* const at = first + std::size_t{vertex_numbers[lane]} * stride;
+    for (std::size_t c = 0; c < kCount; ++c) {
+      Element element;
+      std::memcpy(&element, at + c * sizeof element, sizeof element);
+      out[c][lane] = convert(element);
+    }
   }
 }
 

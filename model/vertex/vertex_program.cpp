@@ -1,5 +1,7 @@
 #include "model/vertex/vertex_program.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -17,6 +19,11 @@ namespace {
 constexpr std::size_t kMostPlans = 8;  // kept for sets of grouped inputs
 
 }  // namespace
+
+void NextVertices::prefetch(std::size_t first, std::size_t count) const {
+  for (std::size_t i = first; i < std::min(first + count, numbers.size()); ++i)
+    hwy::Prefetch(buffer.data() + std::size_t{numbers[i]} * stride);
+}
 
 struct VertexProgram::Decoded {
   Arithmetic arithmetic = Arithmetic::ieee;
@@ -90,10 +97,16 @@ class VertexProgram::Execution {
   // Sets what a batch starts with.
   void begin(int count, unsigned grouped_inputs = 0);
 
+  // A few of `next` are asked for at each step: more at once, and the processor would wait for them.
   template <typename RunCall>
-  void run(int count, unsigned grouped_inputs, RunCall run_call) {
+  void run(int count, unsigned grouped_inputs, const NextVertices& next, RunCall run_call) {
     begin(count, grouped_inputs);
-    for (std::size_t i = 0; i < plan_->calls.size(); ++i) run_step(i, count, run_call);
+    const std::size_t steps = plan_->calls.size(),
+                      at_once = next.numbers.size() / std::max<std::size_t>(steps, 1) + 1;
+    for (std::size_t i = 0; i < steps; ++i) {
+      next.prefetch(i * at_once, at_once);
+      run_step(i, count, run_call);
+    }
   }
 
   // run_call(call, number of lanes)
@@ -303,23 +316,25 @@ unsigned VertexProgram::inputs_read() const {
   return read;
 }
 
-void VertexProgram::run_batch(Execution& execution, int count, unsigned grouped_inputs) const {
+void VertexProgram::run_batch(Execution& execution, int count, unsigned grouped_inputs,
+                              const NextVertices& next) const {
   if (decoded_->arithmetic == Arithmetic::ieee) {
-    execution.run(count, grouped_inputs, run_simd_ieee);
+    execution.run(count, grouped_inputs, next, run_simd_ieee);
   } else {
     const Nv20Mode mode;
-    execution.run(count, grouped_inputs, run_simd_nv20);
+    execution.run(count, grouped_inputs, next, run_simd_nv20);
   }
 }
 
 void VertexProgram::run(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out,
                         int count) const {
-  run_batch(*std::make_unique<Execution>(*decoded_, constants, in, out), count, 0);
+  run_batch(*std::make_unique<Execution>(*decoded_, constants, in, out), count, 0, {});
 }
 
 void VertexProgram::run_scalar(std::span<const Vec4> constants, const InputBatch& in, OutputBatch& out,
                                int count) const {
-  std::make_unique<Execution>(*decoded_, constants, in, out)->run(count, 0, [&](const Call& call, int lanes) {
+  const auto execution = std::make_unique<Execution>(*decoded_, constants, in, out);
+  execution->run(count, 0, {}, [&](const Call& call, int lanes) {
     vertex::run_scalar(call, decoded_->arithmetic, 0, lanes);
   });
 }
@@ -350,8 +365,8 @@ InputBatch& VertexProgram::Bound::grouped_input() {
 const OutputBatch& VertexProgram::Bound::output() const {
   return state_->out;
 }
-void VertexProgram::Bound::run(int count, unsigned grouped_inputs) {
-  state_->program.run_batch(state_->execution, count, grouped_inputs & state_->program.inputs_read());
+void VertexProgram::Bound::run(int count, unsigned grouped_inputs, const NextVertices& next) {
+  state_->program.run_batch(state_->execution, count, grouped_inputs & state_->program.inputs_read(), next);
 }
 
 }  // namespace splatscope::vertex

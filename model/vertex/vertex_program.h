@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -24,6 +25,16 @@ struct InputBatch {
 };
 struct OutputBatch {
   alignas(64) float o[kOutputs][4][kBatch];
+};
+
+// Vertices of a buffer, `stride` bytes each, that a program is to run on next.
+struct NextVertices {
+  std::span<const std::byte> buffer;
+  std::uint32_t stride = 0;
+  std::span<const std::uint32_t> numbers;
+
+  // Begins to bring the bytes of as many as there are of numbers[first] to numbers[first + count - 1].
+  void prefetch(std::size_t first, std::size_t count) const;
 };
 
 // Registers of one vertex between two instructions.
@@ -63,8 +74,9 @@ class VertexProgram {
     InputBatch& grouped_input();
     const OutputBatch& output() const;
     // Runs vertices 0..count-1 (count <= kBatch) of input(). The inputs in `grouped_inputs` (bit n: v<n>) are
-    // taken from grouped_input() instead; `count` is then a multiple of kGroup. The same bits, sooner.
-    void run(int count, unsigned grouped_inputs = 0);
+    // taken from grouped_input() instead; `count` is then a multiple of kGroup. The same bits, sooner. The
+    // bytes of `next` come from memory meanwhile.
+    void run(int count, unsigned grouped_inputs = 0, const NextVertices& next = {});
 
    private:
     struct State;
@@ -81,7 +93,7 @@ class VertexProgram {
  private:
   struct Decoded;
   class Execution;
-  void run_batch(Execution& execution, int count, unsigned grouped_inputs) const;
+  void run_batch(Execution& execution, int count, unsigned grouped_inputs, const NextVertices& next) const;
   std::unique_ptr<Decoded> decoded_;
 };
 
