@@ -23,53 +23,56 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::CappedTag<float, 16>;
 using I = hn::RebindToSigned<F>;
 using U = hn::RebindToUnsigned<F>;
+using VF = hn::Vec<F>;
+using VU = hn::Vec<U>;
 constexpr std::size_t kAtOnce = 64;
 
-// The texel of each coordinate along one side of `size` texels.
-HWY_INLINE void places(const float* coordinates, std::uint32_t size, std::size_t count, std::int32_t* out) {
-  const auto zero = hn::Zero(F{}), texels = hn::Set(F{}, static_cast<float>(size)),
-             last = hn::Set(F{}, static_cast<float>(size - 1));
+// The texels of coordinates along a side of so many texels.
+HWY_INLINE VU places(VF coordinates, VF texels) {
+  const VF last = hn::Sub(texels, hn::Set(F{}, 1.0f));
+  const VF place = splatscope::HWY_NAMESPACE::within(hn::Mul(coordinates, texels), hn::Zero(F{}), last);
+  return hn::BitCast(U{}, splatscope::HWY_NAMESPACE::integer(place));
+}
+
+// The numbers of the texels at `count` coordinates, and (where wanted) of the blocks that these are in.
+HWY_INLINE void find_texels(const Texture& texture, const float* u, const float* v, std::size_t count,
+                            std::uint32_t* texels, std::uint32_t* blocks) {
+  static_assert(kTexelBlockEdge == 4);
+  const VU width = hn::Set(U{}, texture.width),
+           blocks_in_row = hn::Set(U{}, (texture.width + kTexelBlockEdge - 1) / kTexelBlockEdge);
+  const VF columns = hn::Set(F{}, static_cast<float>(texture.width)),
+           rows = hn::Set(F{}, static_cast<float>(texture.height));
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{})) {
-    const auto scaled = hn::Mul(hn::LoadU(F{}, coordinates + i), texels);
-    const auto within = splatscope::HWY_NAMESPACE::within(scaled, zero, last);
-    hn::StoreU(splatscope::HWY_NAMESPACE::integer(within), I{}, out + i);
+    const VU x = places(hn::LoadU(F{}, u + i), columns), y = places(hn::LoadU(F{}, v + i), rows);
+    hn::Store(hn::Add(hn::Mul(y, width), x), U{}, texels + i);
+    if (blocks != nullptr)
+      hn::Store(hn::Add(hn::Mul(hn::ShiftRight<2>(y), blocks_in_row), hn::ShiftRight<2>(x)), U{}, blocks + i);
   }
 }
 
-// The texels of `count` places as alpha.
-HWY_INLINE void look_up(const Texture& texture, const std::int32_t* x, const std::int32_t* y,
-                        std::size_t count, float* alpha) {
-  alignas(64) std::uint32_t index[kAtOnce];
-  const auto width = hn::Set(U{}, texture.width);
-  for (std::size_t i = 0; i < count; i += hn::Lanes(U{})) {
-    const auto column = hn::BitCast(U{}, hn::Load(I{}, x + i)), row = hn::BitCast(U{}, hn::Load(I{}, y + i));
-    hn::Store(hn::Add(hn::Mul(row, width), column), U{}, index + i);
-  }
+// Texels as alpha.
+HWY_INLINE void look_up(const Texture& texture, const std::uint32_t* texels, std::size_t count,
+                        float* alpha) {
   if (texture.bits != 8) {
-    for (std::size_t i = 0; i < count; ++i) alpha[i] = wide_texel(texture, index[i]);
+    for (std::size_t i = 0; i < count; ++i) alpha[i] = wide_texel(texture, texels[i]);
     return;
   }
-  alignas(64) std::int32_t texels[kAtOnce];
-  for (std::size_t i = 0; i < count; ++i) texels[i] = texture.texels[index[i]];
+  alignas(64) std::int32_t levels[kAtOnce];
+  for (std::size_t i = 0; i < count; ++i) levels[i] = texture.texels[texels[i]];
   alignas(64) float values[kAtOnce];
   for (std::size_t i = 0; i < count; i += hn::Lanes(F{}))
-    hn::Store(splatscope::HWY_NAMESPACE::over_255(hn::Load(I{}, texels + i)), F{}, values + i);
+    hn::Store(splatscope::HWY_NAMESPACE::over_255(hn::Load(I{}, levels + i)), F{}, values + i);
   std::copy_n(values, count, alpha);
 }
 
 void sample(const Texture& texture, const float* u, const float* v, std::span<float> alpha,
             std::span<std::uint32_t> blocks) {
-  const std::uint32_t blocks_in_row = (texture.width + kTexelBlockEdge - 1) / kTexelBlockEdge;
+  alignas(64) std::uint32_t texels[kAtOnce], of_texels[kAtOnce];
   for (std::size_t first = 0; first < alpha.size(); first += kAtOnce) {
     const std::size_t count = std::min(alpha.size() - first, kAtOnce);
-    alignas(64) std::int32_t x[kAtOnce], y[kAtOnce];
-    places(u + first, texture.width, count, x);
-    places(v + first, texture.height, count, y);
-    look_up(texture, x, y, count, alpha.data() + first);
-    for (std::size_t i = 0; i < (blocks.empty() ? 0 : count); ++i) {
-      const auto column = static_cast<std::uint32_t>(x[i]), row = static_cast<std::uint32_t>(y[i]);
-      blocks[first + i] = (row / kTexelBlockEdge) * blocks_in_row + column / kTexelBlockEdge;
-    }
+    find_texels(texture, u + first, v + first, count, texels, blocks.empty() ? nullptr : of_texels);
+    look_up(texture, texels, count, alpha.data() + first);
+    if (!blocks.empty()) std::copy_n(of_texels, count, blocks.data() + first);
   }
 }
 
