@@ -23,13 +23,12 @@ class CacheTags {
         set_mask_(static_cast<std::uint32_t>(lines / ways) - 1),
         tags_(static_cast<std::size_t>(lines)) {}
 
-  // Null where the line is not held.
+  // Null where the line is not held. Looks at every way: which one it is cannot be foreseen.
   Way* find(std::uint32_t line) {
     Way* set = set_of(line);
-    for (std::uint32_t way = 0; way < ways_; ++way) {
-      if (set[way].line == line) return &set[way];
-    }
-    return nullptr;
+    Way* found = nullptr;
+    for (std::uint32_t way = 0; way < ways_; ++way) found = set[way].line == line ? &set[way] : found;
+    return found;
   }
   // The way that `line` will have: an empty one, else the least recently used of its set.
   Way& victim(std::uint32_t line) {
