@@ -110,6 +110,14 @@ MeshCounts mend(Mesh& mesh) {
   return counts;
 }
 
+TriangleCorners corners_of(const Mesh& mesh) {
+  TriangleCorners corners;
+  corners.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles)
+    corners.push_back({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
+  return corners;
+}
+
 SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& weights) {
   const auto& t = mesh.triangles[triangle];
   const glm::vec3 w(weights);

@@ -48,6 +48,10 @@ struct Model {
   Paint paint;
 };
 
+// The corners of each triangle side by side, for who looks at them again and again.
+using TriangleCorners = std::vector<std::array<glm::vec3, 3>>;
+TriangleCorners corners_of(const Mesh& mesh);
+
 // Leaves out the triangles that have no surface and gives every vertex of the others a normal of unit length.
 // Computed normals are weighted by area and smooth over vertices at the same position. Positions beyond
 // 1e15 object units count as not finite: products of them would be.

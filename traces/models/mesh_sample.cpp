@@ -7,7 +7,7 @@
 
 namespace splatscope::traces {
 
-MeshSample closest_sample(const Mesh& mesh, std::span<const std::uint32_t> triangles,
+MeshSample closest_sample(const TriangleCorners& mesh, std::span<const std::uint32_t> triangles,
                           const glm::dvec3& place) {
   MeshSample best;
   double least = std::numeric_limits<double>::infinity();

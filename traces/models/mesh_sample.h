@@ -16,7 +16,7 @@ struct MeshSample {
 };
 
 // The point of `triangles`, at least one, that is closest to `place`; on ties that of the first.
-MeshSample closest_sample(const Mesh& mesh, std::span<const std::uint32_t> triangles,
+MeshSample closest_sample(const TriangleCorners& mesh, std::span<const std::uint32_t> triangles,
                           const glm::dvec3& place);
 
 }  // namespace splatscope::traces

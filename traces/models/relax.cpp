@@ -20,7 +20,7 @@ constexpr double kWider = 1.2;
 constexpr double kStep = 0.3;      // of a push, in units of that distance
 constexpr double kFurthest = 0.2;  // that a point moves in a round, in the same units
 
-glm::dvec3 normal_of(const Mesh& mesh, std::uint32_t triangle) {
+glm::dvec3 normal_of(const TriangleCorners& mesh, std::uint32_t triangle) {
   const Triangle t = triangle_of(mesh, triangle);
   return glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
 }
@@ -63,7 +63,7 @@ glm::dvec3 pushed(std::span<const Surfel> points, std::size_t i, const Surroundi
 
 }  // namespace
 
-void relax(const Mesh& mesh, const Voxels& voxels, const VoxelIndex& index, int rounds,
+void relax(const TriangleCorners& mesh, const Voxels& voxels, const VoxelIndex& index, int rounds,
            std::vector<MeshSample>& points) {
   const auto for_each = [&](const auto& use) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 256), [&](const auto& range) {

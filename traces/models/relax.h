@@ -14,7 +14,7 @@ namespace splatscope::traces {
 // from one region to another hardly changes. Points whose triangles face opposite ways, on the two sides of a
 // thin wall, do not see each other. `index` is that of `voxels`. The result does not depend on the number of
 // threads.
-void relax(const Mesh& mesh, const Voxels& voxels, const VoxelIndex& index, int rounds,
+void relax(const TriangleCorners& mesh, const Voxels& voxels, const VoxelIndex& index, int rounds,
            std::vector<MeshSample>& points);
 
 }  // namespace splatscope::traces

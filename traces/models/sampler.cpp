@@ -38,7 +38,7 @@ double distance2(const glm::dvec3& a, const glm::dvec3& b) {
 
 // Projection onto the surface inside the cell. A triangle goes on beyond its cell, and the closest point may
 // lie there; going back and forth between two convex bodies that meet leads to where they do.
-MeshSample project(const Mesh& mesh, const SampledCell& cell, const glm::dvec3& place) {
+MeshSample project(const TriangleCorners& mesh, const SampledCell& cell, const glm::dvec3& place) {
   constexpr int kTries = 4;
   const glm::dvec3 half = 0.5 * cell.dimensions;
   MeshSample found = closest_sample(mesh, cell.triangles, place);
@@ -54,9 +54,9 @@ MeshSample project(const Mesh& mesh, const SampledCell& cell, const glm::dvec3& 
 class Sampler {
  public:
   Sampler(const Mesh& mesh, const SamplerOptions& options)
-      : mesh_(mesh),
+      : mesh_(corners_of(mesh)),
         options_(options),
-        voxels_(voxelize(mesh, options.depth, options.count)),
+        voxels_(voxelize(mesh_, options.depth, options.count)),
         index_(voxels_) {
     const std::size_t cells = voxels_.cells.size();
     states_.resize(cells);
@@ -98,7 +98,8 @@ class Sampler {
   struct State {
     std::uint32_t unsampled = 0;
     std::uint32_t samples = 0;
-    std::uint32_t last = kNone;  // of its points; the others by next_
+    std::uint32_t last = kNone;   // of its points; the others by next_
+    std::uint32_t taken = kNone;  // of its places, the one that was taken last
   };
 
   struct Entry {
@@ -157,22 +158,22 @@ class Sampler {
   }
 
   void take_point(std::uint32_t i) {
-    MeshSample* best = nullptr;
+    State& state = states_[i];
+    // Another place for the one that was taken; few cells have a second turn, so not before it comes.
+    if (state.taken != kNone)
+      places_[i * kPlaces + state.taken] = try_place(seen(i), kPlaces + state.samples - 1);
     double most = -1;
     for (std::size_t p = 0; p < kPlaces; ++p) {
-      MeshSample& place = places_[i * kPlaces + p];
-      const double distance = room(around_[i], place);
+      const double distance = room(around_[i], places_[i * kPlaces + p]);
       if (!(distance > most)) continue;
       most = distance;
-      best = &place;
+      state.taken = static_cast<std::uint32_t>(p);
     }
-    State& state = states_[i];
-    points_.push_back(*best);
+    points_.push_back(places_[i * kPlaces + state.taken]);
     next_.push_back(state.last);
     state.last = static_cast<std::uint32_t>(points_.size() - 1);
     ++state.samples;
-    mark_sampled(i, *best);
-    *best = try_place(seen(i), kPlaces + state.samples - 1);
+    mark_sampled(i, points_.back());
   }
 
   void mark_sampled(std::uint32_t i, const MeshSample& point) {
@@ -200,7 +201,7 @@ class Sampler {
     return out;
   }
 
-  const Mesh& mesh_;
+  const TriangleCorners mesh_;
   const SamplerOptions& options_;
   Voxels voxels_;
   VoxelIndex index_;

@@ -28,12 +28,13 @@ std::vector<MeshSample> sample_count(const Mesh& mesh, std::size_t count) {
 
 TEST(Sampler, GivesExactlyAsManyPointsAsAskedForOnTheSurface) {
   const Mesh mesh = ball(8);
+  const TriangleCorners corners = corners_of(mesh);
   for (std::size_t count : {0u, 1u, 2u, 3u, 7u, 100u, 767u, 768u, 5000u}) {
     const auto samples = sample_count(mesh, count);
     ASSERT_EQ(samples.size(), count);
     for (const MeshSample& s : samples) {
       ASSERT_LT(s.triangle, mesh.triangles.size());
-      const glm::dvec3 p = point_at(triangle_of(mesh, s.triangle), s.weights);
+      const glm::dvec3 p = point_at(triangle_of(corners, s.triangle), s.weights);
       ASSERT_LT(glm::distance(p, glm::dvec3(s.position)), 1e-6);
       ASSERT_GE(std::min({s.weights.x, s.weights.y, s.weights.z}), -1e-12);
     }

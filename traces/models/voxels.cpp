@@ -14,12 +14,12 @@ namespace {
 
 // A little larger than the mesh, and not the same on both sides: a face of a tidy model then does not lie
 // exactly between two cells, where it would fill both.
-Voxels root_of(const Mesh& mesh) {
-  glm::dvec3 low(mesh.positions[mesh.triangles.front()[0]]), high = low;
-  for (const auto& t : mesh.triangles) {
-    for (std::uint32_t corner : t) {
-      low = glm::min(low, glm::dvec3(mesh.positions[corner]));
-      high = glm::max(high, glm::dvec3(mesh.positions[corner]));
+Voxels root_of(const TriangleCorners& mesh) {
+  glm::dvec3 low(mesh.front()[0]), high = low;
+  for (const auto& corners : mesh) {
+    for (const glm::vec3& corner : corners) {
+      low = glm::min(low, glm::dvec3(corner));
+      high = glm::max(high, glm::dvec3(corner));
     }
   }
   const double diagonal = glm::length(high - low);
@@ -27,7 +27,7 @@ Voxels root_of(const Mesh& mesh) {
   root.low = low - 0.0010 * diagonal;
   root.size = high + 0.0023 * diagonal - root.low;
   root.cells = {glm::uvec3(0)};
-  root.triangles.resize(mesh.triangles.size());
+  root.triangles.resize(mesh.size());
   std::iota(root.triangles.begin(), root.triangles.end(), 0u);
   root.first = {0, root.triangles.size()};
   return root;
@@ -42,8 +42,8 @@ struct Part {
 };
 
 // The halves of one cell that triangles overlap.
-void halve(const Mesh& mesh, const Voxels& parents, const Voxels& children, int axis, std::size_t cell,
-           Part& out) {
+void halve(const TriangleCorners& mesh, const Voxels& parents, const Voxels& children, int axis,
+           std::size_t cell, Part& out) {
   glm::uvec3 place = parents.cells[cell];
   place[axis] *= 2;
   const double middle = children.low[axis] + (place[axis] + 1) * children.size[axis];
@@ -71,17 +71,17 @@ void halve(const Mesh& mesh, const Voxels& parents, const Voxels& children, int 
   out.triangles.insert(out.triangles.end(), out.upper.begin(), out.upper.end());
 }
 
-Voxels next_level(const Mesh& mesh, const Voxels& parents, int axis) {
+Voxels next_level(const TriangleCorners& mesh, const Voxels& parents, int axis) {
   Voxels children;
   children.low = parents.low;
   children.size = parents.size;
   children.size[axis] *= 0.5;
-  constexpr std::size_t kCellsAPart = 256;  // parts of fixed size: their order is the leaves' order
-  std::vector<Part> parts((parents.cells.size() + kCellsAPart - 1) / kCellsAPart);
+  constexpr std::size_t kParts = 256;  // at most; their order is the leaves' order
+  const std::size_t cells = parents.cells.size(), a_part = (cells + kParts - 1) / kParts;
+  std::vector<Part> parts((cells + a_part - 1) / a_part);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     stop_if_asked();
-    const std::size_t end = std::min((part + 1) * kCellsAPart, parents.cells.size());
-    for (std::size_t cell = part * kCellsAPart; cell < end; ++cell)
+    for (std::size_t cell = part * a_part; cell < std::min((part + 1) * a_part, cells); ++cell)
       halve(mesh, parents, children, axis, cell, parts[part]);
   });
   children.first = {0};
@@ -112,9 +112,9 @@ std::uint32_t VoxelIndex::at(const glm::uvec3& place) const {
   return found == numbers_.end() ? kNone : found->second;
 }
 
-Voxels voxelize(const Mesh& mesh, int depth, std::size_t most_cells) {
+Voxels voxelize(const TriangleCorners& mesh, int depth, std::size_t most_cells) {
   Voxels voxels = root_of(mesh);
-  const std::size_t most_entries = 32 * (mesh.triangles.size() + most_cells);
+  const std::size_t most_entries = 32 * (mesh.size() + most_cells);
   int halvings[3] = {};
   for (int level = 0; level < depth; ++level) {
     const glm::dvec3& size = voxels.size;

@@ -47,12 +47,11 @@ inline constexpr int kMostHalvings = 20;  // of each axis
 // Halves cells `depth` times, or until one more time would give more than `most_cells`; earlier where an axis
 // was halved kMostHalvings times or the lists of triangles outgrow 32 entries a triangle and cell. Needs a
 // mended mesh with at least one triangle. The result does not depend on the number of threads.
-Voxels voxelize(const Mesh& mesh, int depth, std::size_t most_cells);
+Voxels voxelize(const TriangleCorners& mesh, int depth, std::size_t most_cells);
 
-inline Triangle triangle_of(const Mesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  return {glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
-          glm::dvec3(mesh.positions[t[2]])};
+inline Triangle triangle_of(const TriangleCorners& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh[triangle];
+  return {glm::dvec3(a), glm::dvec3(b), glm::dvec3(c)};
 }
 
 }  // namespace splatscope::traces
