@@ -247,20 +247,27 @@ class OneTask {
  public:
   ~OneTask() {
     task_.cancel();
-    try {
-      wait();
-    } catch (...) {
-    }
+    task_.wait();
   }
   template <typename Run>
   void run(Run run) {
-    task_.run([run] { tbb::this_task_arena::isolate(run); });  // it waits for its own alone
+    task_.run([this, run] {
+      try {
+        tbb::this_task_arena::isolate(run);  // it waits for its own alone
+      } catch (...) {
+        failure_ = std::current_exception();
+      }
+    });
   }
   // Throws what it threw.
-  void wait() { task_.wait(); }
+  void wait() {
+    task_.wait();
+    if (failure_) std::rethrow_exception(failure_);
+  }
 
  private:
   tbb::task_group task_;
+  std::exception_ptr failure_;
 };
 
 // The throughput of each draw beside the function of the next, while its work is at hand.
