@@ -1,8 +1,6 @@
 #include "studies/run.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
 
 #include <exception>
 #include <future>
@@ -242,35 +240,7 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
 
 namespace {
 
-// A task beside those of others, on the same threads; where there is one thread, when it is waited for.
-class OneTask {
- public:
-  ~OneTask() {
-    task_.cancel();
-    task_.wait();
-  }
-  template <typename Run>
-  void run(Run run) {
-    task_.run([this, run] {
-      try {
-        tbb::this_task_arena::isolate(run);  // it waits for its own alone
-      } catch (...) {
-        failure_ = std::current_exception();
-      }
-    });
-  }
-  // Throws what it threw.
-  void wait() {
-    task_.wait();
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  tbb::task_group task_;
-  std::exception_ptr failure_;
-};
-
-// The throughput of each draw beside the function of the next, while its work is at hand.
+// The throughput of each draw after its function, while its work is at hand.
 FrameRun run_throughput(const Trace& trace, const Machine& machine, const RenderOptions& options,
                         const Progress& progress, const OnFrame& on_frame) {
   double seconds = 0;
@@ -280,20 +250,13 @@ FrameRun run_throughput(const Trace& trace, const Machine& machine, const Render
     seconds += seconds_since(start);
   };
   sim::ThroughputEstimate estimate(trace, machine, {});
-  DrawWork last;
-  OneTask estimating;
   FrameRun run{render(trace, options, progress, on_frame,
-                      [&](DrawWork work) {
-                        estimating.wait();
-                        last = std::move(work);
-                        estimating.run([&] { timed([&] { estimate.add(last); }); });
-                      }),
+                      [&](const DrawWork& work) { timed([&] { estimate.add(work); }); }),
                {},
                0,
                0,
                {},
                {}};
-  estimating.wait();
   timed([&] { run.timing = estimate.result(); });
   run.timing_seconds = seconds;
   return run;

@@ -89,8 +89,7 @@ TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
     ASSERT_EQ(run.rendered.frame.color(pixel), rendered.frame.color(pixel)) << "pixel " << pixel;
 }
 
-// What is wrong with a trace is found by the thread of the function, and told by the one that waits. An
-// estimate that runs beside it ends before what it looks at is gone.
+// What is wrong with a trace is found by the thread of the function, and told by the one that waits.
 TEST(RunFrame, AnErrorOfTheFunctionIsThrown) {
   const Machine machine = machine::load("radeon-8500");
   const traces::Scene scene = traces::parse_scene(
