@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include "model/error.h"
+#include "model/number/simd_steps-inl.h"
 #include "model/pixel/registers.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,7 +23,7 @@ HWY_INLINE V set(float value) {
 // registers.h's, to the sign of zero.
 HWY_INLINE V in_range(V value, V low, V high) {
   const V number = hn::IfThenZeroElse(hn::IsNaN(value), value);
-  return hn::Min(hn::Max(number, low), high);
+  return splatscope::HWY_NAMESPACE::within(number, low, high);
 }
 
 template <typename Function>

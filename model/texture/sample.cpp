@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "model/number/simd_steps-inl.h"
@@ -37,7 +38,8 @@ HWY_INLINE VU places(VF coordinates, VF texels) {
 // The numbers of the texels at `count` coordinates, and (where wanted) of the blocks that these are in.
 HWY_INLINE void find_texels(const Texture& texture, const float* u, const float* v, std::size_t count,
                             std::uint32_t* texels, std::uint32_t* blocks) {
-  static_assert(kTexelBlockEdge == 4);
+  static_assert(std::has_single_bit(kTexelBlockEdge));
+  constexpr int kEdgeBits = std::countr_zero(kTexelBlockEdge);
   const VU width = hn::Set(U{}, texture.width),
            blocks_in_row = hn::Set(U{}, (texture.width + kTexelBlockEdge - 1) / kTexelBlockEdge);
   const VF columns = hn::Set(F{}, static_cast<float>(texture.width)),
@@ -46,7 +48,8 @@ HWY_INLINE void find_texels(const Texture& texture, const float* u, const float*
     const VU x = places(hn::LoadU(F{}, u + i), columns), y = places(hn::LoadU(F{}, v + i), rows);
     hn::Store(hn::Add(hn::Mul(y, width), x), U{}, texels + i);
     if (blocks != nullptr)
-      hn::Store(hn::Add(hn::Mul(hn::ShiftRight<2>(y), blocks_in_row), hn::ShiftRight<2>(x)), U{}, blocks + i);
+      hn::Store(hn::Add(hn::Mul(hn::ShiftRight<kEdgeBits>(y), blocks_in_row), hn::ShiftRight<kEdgeBits>(x)),
+                U{}, blocks + i);
   }
 }
 
