@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <future>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "model/error.h"
+#include "studies/image_io.h"
 #include "studies/own_program.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
@@ -100,7 +102,9 @@ void run(const Options& options, bool quiet) {
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::reference_of(opened, *map);
   ProgressBar recording("recording", quiet);
+  auto library = std::async(std::launch::async, studies::load_image_library);  // an error: when it is used
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
+  library.wait();
   recording.clear();
   for (const std::string& program : options.programs) studies::replace_program(input.trace, program);
   studies::RunObservers observers(options.observe, input.trace);

@@ -43,6 +43,10 @@ Image opaque_image(int width, int height, std::span<const glm::dvec4> pixels) {
   return image;
 }
 
+void load_image_library() {
+  pictures::codec();
+}
+
 void write_exr(const Image& image, const fs::path& path) {
   traces::write_file(path, encode(".exr", picture_of(image, 4)));
 }

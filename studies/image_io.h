@@ -39,6 +39,9 @@ struct GrayImage {
   std::vector<float> pixels;
 };
 
+// Does now, on any thread, what else the first picture waits for: a fifth of a second of the loader.
+void load_image_library();
+
 // Files appear whole or not at all. Throw UserError where the place cannot be written, std::runtime_error
 // where the library fails.
 void write_exr(const Image& image, const std::filesystem::path& path);  // binary32 RGBA

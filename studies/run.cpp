@@ -1,6 +1,7 @@
 #include "studies/run.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <exception>
 #include <future>
@@ -393,21 +394,32 @@ OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& f
   };
 }
 
+namespace {
+
+void write_reference(const FrameRun& run, const std::filesystem::path& folder) {
+  const Image reference = picture_of(*run.reference);
+  write_exr(reference, folder / "reference.exr");
+  write_png(reference, folder / "reference.png");
+  write_png(difference_picture(run.rendered.frame, *run.reference), folder / "difference.png");
+}
+
+}  // namespace
+
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder) {
   const nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
   const Image picture = picture_of(run.rendered.frame);
-  write_exr(picture, folder / "frame.exr");
-  write_png(picture, folder / "frame.png");
-  write_exr(depth_of(run.rendered.frame), folder / "depth.exr");
-  if (run.reference) {
-    const Image reference = picture_of(*run.reference);
-    write_exr(reference, folder / "reference.exr");
-    write_png(reference, folder / "reference.png");
-    write_png(difference_picture(run.rendered.frame, *run.reference), folder / "difference.png");
-  }
-  for (const HeatMap& map : run.heat_maps) write_exr(map.image, folder / (map.name + ".exr"), "Y");
-  run_report(input, machine, run, results).write(folder / "report.html");
+  // Side by side: to compress them takes longer than many a frame.
+  oneapi::tbb::parallel_invoke(
+      [&] { write_exr(picture, folder / "frame.exr"); }, [&] { write_png(picture, folder / "frame.png"); },
+      [&] { write_exr(depth_of(run.rendered.frame), folder / "depth.exr"); },
+      [&] {
+        if (run.reference) write_reference(run, folder);
+      },
+      [&] {
+        for (const HeatMap& map : run.heat_maps) write_exr(map.image, folder / (map.name + ".exr"), "Y");
+      },
+      [&] { run_report(input, machine, run, results).write(folder / "report.html"); });
   traces::write_file(folder / "results.json", results.dump(1) + "\n");
 }
 

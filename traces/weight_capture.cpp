@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -31,6 +32,11 @@ struct Sphere {
   double radius = 0;
 };
 
+// How far a quad's corners are from its surfel's centre.
+double corner_distance(const Surfel& surfel, const Splatting& splatting) {
+  return std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff)) * surfel.radius;
+}
+
 // About the middle of the bounding box, all quads inside.
 Sphere bounding_sphere(std::span<const Surfel> surfels, const Splatting& splatting) {
   glm::dvec3 low(surfels.front().position), high = low;
@@ -38,10 +44,10 @@ Sphere bounding_sphere(std::span<const Surfel> surfels, const Splatting& splatti
     low = glm::min(low, glm::dvec3(surfel.position));
     high = glm::max(high, glm::dvec3(surfel.position));
   }
-  const double corner = std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff));
   Sphere sphere{0.5 * (low + high), 0};
   for (const Surfel& surfel : surfels) {
-    const double reach = glm::length(glm::dvec3(surfel.position) - sphere.center) + corner * surfel.radius;
+    const double reach =
+        glm::length(glm::dvec3(surfel.position) - sphere.center) + corner_distance(surfel, splatting);
     sphere.radius = std::max(sphere.radius, reach);
   }
   return sphere;
@@ -90,16 +96,23 @@ class CapturedViews {
     options.formats = formats;
     options.record = Record::nothing;
     for (int i = 0; i < capture.views; ++i) {
-      views_.push_back(looking_from(sphere, direction(i, capture.views), capture.frame_size));
+      const CaptureView view = looking_from(sphere, direction(i, capture.views), capture.frame_size);
+      if (may_be_asked(view, surfels, splatting)) views_.push_back(view);
     }
+    if (views_.empty()) return;
     frames_.resize(views_.size(), splatscope::Frame(0, 0, formats));
     const std::vector<VertexWeights> unnormalized(surfels.size(), equal_weights(splatting.gamma));
     const Trace trace = splat_trace({surfels, unnormalized}, views_.front().view, splatting,
                                     {.prefilter = false, .sum_weights = true});
+    // Where there are as many views as threads, each is drawn by one: a draw on several costs more in all.
+    const int threads_a_view =
+        std::max(1, tbb::this_task_arena::max_concurrency() / static_cast<int>(views_.size()));
     std::mutex mutex;
     std::size_t done = 0;
     tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
-      frames_[i] = render_view(trace, seen_from(views_[i].view, splatting, trace), options);
+      tbb::task_arena(threads_a_view).execute([&] {
+        frames_[i] = render_view(trace, seen_from(views_[i].view, splatting, trace), options);
+      });
       const std::lock_guard lock(mutex);
       if (progress) progress(static_cast<double>(++done) / static_cast<double>(views_.size()));
     });
@@ -110,8 +123,7 @@ class CapturedViews {
   float sum_at(const glm::dvec3& point, const glm::dvec3& normal, std::vector<float>& scratch) const {
     scratch.clear();
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      const double cosine = glm::dot(normal, glm::normalize(views_[i].eye - point));
-      if ((both_faces_ ? std::abs(cosine) : cosine) < kSmallestCosine) continue;
+      if (facing(normal, glm::normalize(views_[i].eye - point)) < kSmallestCosine) continue;
       const float sum = seen_sum(views_[i].view, frames_[i], point);
       if (sum > 0) scratch.push_back(sum);
     }
@@ -119,6 +131,24 @@ class CapturedViews {
   }
 
  private:
+  // How far along its normal a point of the surface sees something.
+  double facing(const glm::dvec3& normal, const glm::dvec3& toward) const {
+    const double along = glm::dot(normal, toward);
+    return both_faces_ ? std::abs(along) : along;
+  }
+
+  // False: nothing sees it well, neither centres nor corners. These lie in the plane across the normal, so no
+  // further along it. Half of the views of a plane are in vain.
+  bool may_be_asked(const CaptureView& view, std::span<const Surfel> surfels,
+                    const Splatting& splatting) const {
+    constexpr double kLeast = 0.999 * kSmallestCosine;  // for rounding
+    return std::ranges::any_of(surfels, [&](const Surfel& surfel) {
+      const glm::dvec3 toward = view.eye - glm::dvec3(surfel.position);
+      const double nearest = glm::length(toward) - corner_distance(surfel, splatting);
+      return facing(surfel.normal, toward) >= kLeast * nearest;
+    });
+  }
+
   // Read back from the pixel that holds the point; 0 where something hides it.
   static float seen_sum(const kernels::View& view, const splatscope::Frame& frame, const glm::dvec3& point) {
     const glm::dvec3 camera = view.camera_space(point);

@@ -132,6 +132,19 @@ TEST(WeightCapture, SurfelsAtEdgesHaveAWeightForEachVertex) {
   EXPECT_GT(different, corners.at_edges * 9 / 10);
 }
 
+// Views that see nothing well are left out. One more surfel, which faces these, brings them back.
+TEST(WeightCapture, ViewsLeftOutChangeNoWeight) {
+  std::vector<Surfel> surfels = jittered_square(4, 7);  // a surfel's corners are far apart in these views
+  const Splatting splatting = splatting_of(surfels);
+  surfels.push_back({.position = {5, 0, 0}, .normal = {0, 1, 0}, .radius = 0.001f});
+  const Capture capture = capture_of(64, 256);
+  const CapturedWeights few = capture_weights(surfels, splatting, capture, float_formats());
+  surfels.back().normal = {1, 0, 0};
+  const CapturedWeights many = capture_weights(surfels, splatting, capture, float_formats());
+  for (std::size_t k = 0; k + 1 < surfels.size(); ++k) EXPECT_EQ(many.weights[k], few.weights[k]) << k;
+  EXPECT_GT(few.at_edges, 8u);
+}
+
 TEST(WeightCapture, UnseenSurfelsHaveTheMedianAndAreCounted) {
   std::vector<Surfel> surfels = sphere(1500, 1);
   const std::vector<Surfel> inside = sphere(200, 0.5);
