@@ -67,8 +67,7 @@ std::string describe_shader(const isa::Program& program) {
   for (std::size_t i = 0; i < program.instructions.size(); ++i) {
     const isa::Instruction& instruction = program.instructions[i];
     const isa::InstructionAnalysis& facts = analysis.instructions[i];
-    const int slots = instruction.coissue ? 0 : isa::find_opcode(program.version, instruction.opcode)->slots;
-    text += fmt::format("{:>4} {:>5}  {:<44} {}{}\n", instruction.line, slots,
+    text += fmt::format("{:>4} {:>5}  {:<44} {}{}\n", instruction.line, isa::slots_at(program, i),
                         isa::disassemble(program, instruction), isa::to_string(facts.live_after),
                         facts.dead ? "  dead" : "");
   }

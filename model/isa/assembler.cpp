@@ -224,8 +224,11 @@ class Parser {
 
   void parse_source_register(Place where, const std::string& word, Source& source) {
     if (lexer_.accept('[')) {
-      if (word == "c") return parse_indexed_constant(where, source);
-      lexer_.fail(where, fmt::format("'{}' cannot be indexed, only c[...]", word));
+      const bool numbered = word.size() > 1;
+      const auto base = parse_register(program_.version.kind, numbered ? word : word + "0");
+      if (!base || base->file != RegisterFile::constant)
+        lexer_.fail(where, fmt::format("'{}' cannot be indexed, only c[...]", word));
+      return parse_indexed_constant(where, base->index, source);
     }
     const auto name = parse_register(program_.version.kind, word);
     if (!name)
@@ -234,10 +237,10 @@ class Parser {
     source.index = static_cast<std::uint16_t>(name->index);
   }
 
-  // c[a0.x], c[a0.x + 3], c[3 + a0.x] or c[3], after the bracket.
-  void parse_indexed_constant(Place where, Source& source) {
+  // c[a0.x], c[a0.x + 3], c1[2 + a0.x + 3], c[3] and so on, after the bracket: the sum of all numbers, as
+  // D3DX reads them.
+  void parse_indexed_constant(Place where, int index, Source& source) {
     source.file = RegisterFile::constant;
-    bool has_number = false;
     do {
       const Place at = here();
       const std::string word = lexer_.word();
@@ -246,12 +249,14 @@ class Parser {
         if (!x) lexer_.fail(at, "the address register has one component, expected a0.x");
         source.relative = true;
       } else {
-        const auto number = has_number ? std::nullopt : parse_register(ShaderKind::vertex, "c" + word);
+        const auto number = parse_register(ShaderKind::vertex, "c" + word);
         if (!number) lexer_.fail(at, fmt::format("'{}' is not an index, expected c[a0.x + number]", word));
-        source.index = static_cast<std::uint16_t>(number->index);
-        has_number = true;
+        index += number->index;
+        if (index > kMaximumIndex)
+          lexer_.fail(at, fmt::format("c{} does not exist, expected c{} at most", index, kMaximumIndex));
       }
     } while (lexer_.accept('+'));
+    source.index = static_cast<std::uint16_t>(index);
     if (!lexer_.accept(']')) lexer_.fail(where, "expected ']'");
   }
 

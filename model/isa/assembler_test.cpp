@@ -30,6 +30,24 @@ TEST(Assembler, ReadsOperandsMasksAndNegation) {
   EXPECT_EQ(mad.sources[2], (Source{RegisterFile::temporary, 0}));
 }
 
+// Numbers before and in the brackets add up, as D3DX reads them.
+TEST(Assembler, AddsAllNumbersOfAnIndex) {
+  const std::pair<const char*, int> sums[] = {{"c[a0.x]", 0},        {"c0[a0.x]", 0},
+                                              {"c1[a0.x + 2]", 3},   {"c4[ 2 ]", 6},
+                                              {"c[2+10+12]", 24},    {"c[ 2 + a0.x + 12 ]", 14},
+                                              {"c3[1 + a0.x+ 4]", 8}};
+  for (const auto& [text, sum] : sums) {
+    const Program program = assemble(std::string("vs_1_1\nmov r0, ") + text, "a");
+    const bool relative = std::string_view(text).find("a0") != std::string_view::npos;
+    const Source expected{
+        RegisterFile::constant, static_cast<std::uint16_t>(sum), {0, 1, 2, 3}, false, relative};
+    EXPECT_EQ(program.instructions[0].sources[0], expected) << text;
+  }
+  EXPECT_EQ(error_of("vs_1_1\nmov r0, c2000[a0.x + 48]\n"),
+            "a.vs:2:22: c2048 does not exist, expected c2047 at most");
+  EXPECT_EQ(error_of("vs_1_1\nmov r0, v0[a0.x]\n"), "a.vs:2:9: 'v0' cannot be indexed, only c[...]");
+}
+
 TEST(Assembler, ReadsPixelModifiersAndCoissue) {
   const Program program =
       assemble("ps_1_4\nmul_x2_sat r0.rgb, 1 - r1, r2_bx2.a\n+ mov_d8 r3.a, -v0_bias\n", "a");
@@ -59,11 +77,17 @@ TEST(Assembler, CountsSlotsWithMacrosAtTheirExpansion) {
   EXPECT_EQ(
       slot_count(load("vs_1_1\ndef c4, 0, 0, 0, 0\nm4x4 oPos, v0, c0\nexp r0, v0.x\nfrc r0.xy, v0\n", "a")),
       17);
+  // A pair counts as its longer half.
+  EXPECT_EQ(slot_count(assemble("ps_1_2\nmov r0.rgb, v0\n+ cmp r0.a, r1, v0, v1\n", "a")), 2);
+  EXPECT_EQ(slot_count(assemble("ps_1_2\ncmp r0.rgb, r1, v0, v1\n+ mov r0.a, v0\n", "a")), 2);
 }
 
 TEST(Assembler, ErrorsNameFileLineColumnAndRule) {
   EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0\n  foo r0, v0\n"),
             "a.vs:3:3: unknown instruction 'foo' in vs_1_1");
+  EXPECT_EQ(error_of("vs_1_1\n # if 0\nmov oPos, v0\n#endif\n"),
+            "a.vs:2:2: '#if' needs a preprocessor, expected its output");
+  EXPECT_EQ(error_of("vs_1_1\n#line 3\nmov oPos, v0 # iffy\n"), "accepted");
   EXPECT_EQ(error_of("mov oPos, v0\n"),
             "a.vs:1:1: 'mov' is not a version, expected vs_1_1 or ps_1_1 to ps_1_4 first");
   EXPECT_EQ(error_of("vs_1_1\nmov oPos v0\n"), "a.vs:2:10: expected ',' and another operand");

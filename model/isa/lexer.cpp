@@ -1,5 +1,6 @@
 #include "model/isa/lexer.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -33,6 +34,7 @@ Lexer::Lexer(std::string_view text, std::string_view name) : name_(name), text_(
     }
     switch (in) {
       case In::code:
+        if (c == '#') expect_no_directive(std::string_view(text_).substr(i + 1), {line, column});
         if (c == ';' || c == '#' || (c == '/' && next == '/')) {
           in = In::line_comment;
           c = ' ';
@@ -61,6 +63,17 @@ Lexer::Lexer(std::string_view text, std::string_view name) : name_(name), text_(
     }
   }
   if (in == In::block_comment) fail(opened, "this comment does not end, expected */");
+}
+
+// `after` a '#'. D3DX runs a preprocessor; what it would leave out must not count as a comment.
+void Lexer::expect_no_directive(std::string_view after, Place where) const {
+  after.remove_prefix(std::min(after.find_first_not_of(" \t"), after.size()));
+  const auto* const end = std::ranges::find_if_not(after, is_word);
+  const std::string_view word(after.begin(), end);
+  constexpr std::string_view kDirectives[] = {"define", "undef", "include", "if",   "ifdef",
+                                              "ifndef", "elif",  "else",    "endif"};
+  if (std::ranges::count(kDirectives, word) != 0)
+    fail(where, "'#" + std::string(word) + "' needs a preprocessor, expected its output");
 }
 
 void Lexer::advance() {

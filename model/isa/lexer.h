@@ -12,7 +12,7 @@ namespace splatscope::isa {
 // from 1.
 class Lexer {
  public:
-  // Throws UserError where a comment does not end.
+  // Throws UserError where a comment does not end, or where a '#' asks for a preprocessor.
   Lexer(std::string_view text, std::string_view name);
 
   struct Place {
@@ -41,6 +41,7 @@ class Lexer {
 
  private:
   void advance();
+  void expect_no_directive(std::string_view after, Place where) const;
 
   std::string name_;
   std::string text_;

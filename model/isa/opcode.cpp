@@ -129,14 +129,19 @@ MatrixShape matrix_shape(Opcode opcode) {
   }
 }
 
+int slots_at(const Program& program, std::size_t at) {
+  const auto slots = [&](const Instruction& instruction) {
+    const OpcodeInfo* info = find_opcode(program.version, instruction.opcode);
+    return info ? info->slots : 0;
+  };
+  const int own = slots(program.instructions[at]);
+  if (!program.instructions[at].coissue || at == 0) return own;
+  return std::max(0, own - slots(program.instructions[at - 1]));
+}
+
 int slot_count(const Program& program) {
   int slots = 0;
-  for (const Instruction& instruction : program.instructions) {
-    // A co-issued pair is one slot of the pixel unit.
-    if (const OpcodeInfo* info = find_opcode(program.version, instruction.opcode);
-        info && !instruction.coissue)
-      slots += info->slots;
-  }
+  for (std::size_t at = 0; at < program.instructions.size(); ++at) slots += slots_at(program, at);
   return slots;
 }
 

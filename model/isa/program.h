@@ -159,7 +159,10 @@ Program load(std::string_view text, std::string_view name);
 // Text to program by its syntax alone: a fragment need not be a valid program. Throws UserError as load does.
 Program assemble(std::string_view text, std::string_view name);
 
-// Instruction slots as Direct3D 8.1 counts them: 1 an instruction, macros at their expansion, def and dcl 0.
+// Instruction slots as Direct3D 8.1 counts them: 1 an instruction, macros at their expansion, def and dcl 0,
+// a co-issued pair those of its longer half.
 int slot_count(const Program& program);
+// What instruction number `at` adds to them.
+int slots_at(const Program& program, std::size_t at);
 
 }  // namespace splatscope::isa

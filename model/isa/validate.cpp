@@ -36,6 +36,7 @@ unsigned components_read(const Instruction& instruction, int source) {
     case Opcode::texcrd:
     case Opcode::texld:
     case Opcode::texreg2rgb:
+    case Opcode::texbeml:  // the third is the luminance
       lanes = 0x7;
       break;
     case Opcode::dp4:
@@ -68,7 +69,6 @@ unsigned components_read(const Instruction& instruction, int source) {
       lanes = 0x3;
       break;
     case Opcode::texbem:
-    case Opcode::texbeml:
       lanes = 0x3;
       break;
     case Opcode::texreg2ar:
@@ -109,6 +109,10 @@ void validate(const Program& program) {
   for (const Definition& definition : program.definitions)
     if (definition.before != 0)
       throw UserError(program.name, definition.line, definition.column, "def must precede the instructions");
+  for (const Declaration& declaration : program.declarations)
+    if (declaration.before != 0)
+      throw UserError(program.name, declaration.line, declaration.column,
+                      "dcl must precede the instructions");
   program.version.kind == ShaderKind::vertex ? validate_vertex(program) : validate_pixel(program);
 }
 

@@ -74,7 +74,7 @@ class PixelValidator {
     check_occurrences(instruction);
     texture ? check_texture(instruction) : check_arithmetic(instruction);
     check_reads(at);
-    check_slots(instruction, info, texture);
+    check_slots(at, info, texture);
     texture ? record_texture(instruction) : record_arithmetic(at);
   }
 
@@ -113,12 +113,13 @@ class PixelValidator {
         reject(program_, instruction, "a program uses _dz at most twice");
   }
 
-  void check_slots(const Instruction& instruction, const OpcodeInfo& info, bool texture) {
+  void check_slots(std::size_t at, const OpcodeInfo& info, bool texture) {
+    const Instruction& instruction = program_.instructions[at];
     if (texture) {
       texture_slots_ += 1;
       arithmetic_slots_ += info.slots - 1;  // texbeml
-    } else if (!instruction.coissue) {
-      arithmetic_slots_ += info.slots;
+    } else {
+      arithmetic_slots_ += slots_at(program_, at);
     }
     const std::string where = version_1_4_ ? " in a phase" : "";
     if (texture_slots_ > limits_.texture_slots)
@@ -284,19 +285,21 @@ class PixelValidator {
       reject(program_, instruction, "the rows of a matrix are in consecutive stages and read the same t#");
   }
 
-  // Every register read has been written; none is spent by texbem or texdepth.
+  // Every register read has been written; none is spent by texbem, texdepth or texm3x2depth.
   void check_reads(std::size_t at) const {
     const Instruction& instruction = program_.instructions[at];
+    check_not_spent(instruction, instruction.destination);
     for (int i = 0; i < instruction.source_count; ++i) {
       const Source& source = instruction.sources[static_cast<std::size_t>(i)];
       const unsigned read = components_read(instruction, i);
+      check_not_spent(instruction, source);
       if (source.file == RegisterFile::temporary) {
         const auto& written = instruction.opcode == texld ? before_phase_ : written_;
         if (instruction.opcode == texld && !phase_marker_seen_)
           reject(program_, instruction, "texld reads r# in the second phase only, written in the first");
         check_temporary(instruction, source.index, read, written);
       } else if (source.file == RegisterFile::texture && !version_1_4_) {
-        check_texture_register(instruction, source.index);
+        check_texture_register(instruction, source.index, read);
       }
     }
     const bool reads_destination = instruction.opcode == texdepth || instruction.opcode == texkill;
@@ -305,21 +308,30 @@ class PixelValidator {
                       written_);
   }
 
+  // Of a source or destination: what has become the depth is no register any more.
+  template <typename Operand>
+  void check_not_spent(const Instruction& instruction, const Operand& operand) const {
+    if (depth_ && operand.file == depth_->file && operand.index == depth_->index)
+      reject(program_, instruction,
+             fmt::format("{} cannot be used after {}", register_name(depth_->file, depth_->index),
+                         version_1_4_ ? "texdepth" : "texm3x2depth"));
+  }
+
   void check_temporary(const Instruction& instruction, std::size_t index, unsigned read,
                        const WrittenComponents& written) const {
-    if (depth_written_ && index == 5) reject(program_, instruction, "r5 cannot be used after texdepth");
     if (read & ~written[index])
       reject(program_, instruction,
              fmt::format("r{} is read before it is written (all the components read)", index));
   }
 
-  void check_texture_register(const Instruction& instruction, std::size_t index) const {
+  void check_texture_register(const Instruction& instruction, std::size_t index, unsigned read) const {
     const bool bump = instruction.opcode == texbem || instruction.opcode == texbeml;
     if (bumped_[index] && !bump)
       reject(program_, instruction,
              fmt::format("t{} has been read by texbem or texbeml and cannot be read again", index));
-    if (!texture_written_[index])
-      reject(program_, instruction, fmt::format("t{} holds nothing to read here", index));
+    if (read & ~texture_written_[index])
+      reject(program_, instruction,
+             fmt::format("t{} is read before it is written (all the components read)", index));
   }
 
   // The second half of a co-issued pair.
@@ -345,32 +357,33 @@ class PixelValidator {
   }
 
   void record_arithmetic(std::size_t at) {
-    const Instruction& instruction = program_.instructions[at];
     arithmetic_begun_ = true;
-    if (instruction.destination.file == RegisterFile::texture) {
-      texture_written_[instruction.destination.index] = true;
-      bumped_[instruction.destination.index] = false;
-      return;
-    }
     // Both halves of a pair read before either writes.
     const bool opens_pair = at + 1 < program_.instructions.size() && program_.instructions[at + 1].coissue;
     if (opens_pair) return;
-    written_[instruction.destination.index] |= instruction.destination.mask;
-    if (instruction.coissue) {
-      const Destination& first = program_.instructions[at - 1].destination;
-      if (first.file == RegisterFile::temporary) written_[first.index] |= first.mask;
+    record_result(program_.instructions[at].destination);
+    if (program_.instructions[at].coissue) record_result(program_.instructions[at - 1].destination);
+  }
+
+  void record_result(const Destination& destination) {
+    if (destination.file == RegisterFile::temporary) {
+      written_[destination.index] |= destination.mask;
+    } else {
+      texture_written_[destination.index] |= destination.mask;
+      bumped_[destination.index] = false;
     }
   }
 
   void record_texture(const Instruction& instruction) {
     const Destination& destination = instruction.destination;
     const std::size_t index = destination.index;
-    if (instruction.opcode == texdepth) depth_written_ = true;
+    if (instruction.opcode == texdepth || instruction.opcode == texm3x2depth) depth_ = destination;
     if (instruction.opcode == texkill || instruction.opcode == texdepth) return;
     if (version_1_4_) {
       const Source& source = instruction.sources[0];
       if (source.file == RegisterFile::texture) selectors_[source.index] = source.swizzle != kXyw;
       written_[index] = destination.mask;  // texcrd leaves nothing in the other components
+      if (phase_marker_seen_) before_phase_[index] = 0;
       return;
     }
     const int rows = row_count(instruction.opcode);
@@ -381,7 +394,7 @@ class PixelValidator {
       pad_rows_ = rows;
     }
     pads_ = pad ? pads_ + 1 : 0;
-    texture_written_[index] = !pad && instruction.opcode != texm3x2depth;
+    texture_written_[index] = pad ? 0 : 0xf;
     if (instruction.opcode == texbem || instruction.opcode == texbeml)
       bumped_[instruction.sources[0].index] = true;
   }
@@ -390,12 +403,13 @@ class PixelValidator {
   PixelLimits limits_;
   bool version_1_4_;
   bool has_phase_ = false, phase_marker_seen_ = false;
-  bool arithmetic_begun_ = false, depth_written_ = false;
+  bool arithmetic_begun_ = false;
+  std::optional<Destination> depth_;              // of texdepth or texm3x2depth
   int texture_slots_ = 0, arithmetic_slots_ = 0;  // of this phase
   int comparisons_ = 0, dot_products_ = 0, bumps_ = 0, divisions_ = 0;
   int pads_ = 0, pad_rows_ = 0, pad_stage_ = 0, pad_source_ = 0;
-  WrittenComponents written_{}, before_phase_{};
-  std::array<bool, 8> texture_written_{}, bumped_{};
+  WrittenComponents written_{}, before_phase_{}, texture_written_{};
+  std::array<bool, 8> bumped_{};
   std::array<std::optional<bool>, 8> selectors_{};  // of each t#: .xyz (or .xyw)
 };
 

@@ -52,6 +52,55 @@ TEST(Validate, DefinitionsPrecedeTheInstructions) {
   EXPECT_EQ(error_of("vs_1_1\ndcl_position v0\ndef c0, 1, 1, 1, 1\nmul oPos, v0, c0\n"), "accepted");
 }
 
+TEST(Validate, DeclarationsPrecedeTheInstructions) {
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0\ndcl_normal v1\n"), "p:3:1: dcl must precede the instructions");
+}
+
+TEST(Validate, WhatHasBecomeTheDepthIsNoRegister) {
+  EXPECT_EQ(error_of("ps_1_4\ntexcrd r5.rgb, t0\nphase\ntexdepth r5\nmov r5, c0\nmov r0, c0\n"),
+            "p:5:1: r5 cannot be used after texdepth");
+  EXPECT_EQ(error_of("ps_1_4\ntexcrd r5.rgb, t0\nphase\ntexdepth r5\ntexld r5, t0\nmov r0, c0\n"),
+            "p:5:1: r5 cannot be used after texdepth");
+  EXPECT_EQ(error_of("ps_1_3\ntex t0\ntexm3x2pad t1, t0\ntexm3x2depth t2, t0\nmov t2, v0\nmov r0, v0\n"),
+            "p:5:1: t2 cannot be used after texm3x2depth");
+  EXPECT_EQ(error_of("ps_1_3\ntex t0\ntexm3x2pad t1, t0\ntexm3x2depth t2, t0\nmov t3, v0\nmov r0, t3\n"),
+            "accepted");
+}
+
+TEST(Validate, ReadsOfTextureRegistersNeedTheirComponents) {
+  EXPECT_EQ(error_of("ps_1_1\nmov t1.a, v0\nmov r0, t1\n"),
+            "p:3:1: t1 is read before it is written (all the components read)");
+  EXPECT_EQ(error_of("ps_1_1\nmov t1.a, v0\nmov t1.rgb, v0\nmov r0, t1\n"), "accepted");
+}
+
+// Either half may write a t#; both count once the pair is over.
+TEST(Validate, BothHalvesOfAPairWrite) {
+  EXPECT_EQ(error_of("ps_1_1\ntex t0\nmov r0.rgb, v0\n+ mov t0.a, v0\nmov r0.a, t0\n"), "accepted");
+  EXPECT_EQ(error_of("ps_1_1\ntex t0\nmov t0.a, v0\n+ mov r0.rgb, v0\nmov r0.a, t0\n"), "accepted");
+  EXPECT_EQ(error_of("ps_1_1\nmov t1.rgb, v0\n+ mov r0.a, t1\nmov r0.rgb, t1\n"),
+            "p:3:3: t1 is read before it is written (all the components read)");
+}
+
+TEST(Validate, BothHalvesOfAPairTakeSlots) {
+  std::string moves = "ps_1_2\n";
+  for (int i = 0; i < 7; ++i) moves += "mov r1, v0\n";
+  EXPECT_NE(error_of(moves + "mov r0.rgb, v0\n+ cmp r0.a, r1, v0, v1\n"), "accepted");
+  EXPECT_NE(error_of(moves + "cmp r0.a, r1, v0, v1\n+ mov r0.rgb, v0\n"), "accepted");
+  EXPECT_EQ(error_of(moves + "mov r0.rgb, v0\n+ mov r0.a, v1\n"), "accepted");
+}
+
+TEST(Validate, DependentReadsAreOfTheFirstPhase) {
+  EXPECT_EQ(error_of("ps_1_4\ntexcrd r0.rgb, t0\nphase\ntexld r0, t1\ntexld r1, r0\nmov r0, r1\n"),
+            "p:5:1: r0 is read before it is written (all the components read)");
+  EXPECT_EQ(error_of("ps_1_4\ntexcrd r0.rgb, t0\nphase\ntexld r0, r0\nmov r0, r0\n"), "accepted");
+}
+
+// Out of range a constant reads as 0, so where the rows of a relative matrix lie is no matter.
+TEST(Validate, RowsOfARelativeMatrixMayReachPastTheLastConstant) {
+  EXPECT_EQ(error_of("vs_1_1\nmov a0.x, v1.x\nm4x4 oPos, v0, c[a0.x + 95]\n"), "accepted");
+  EXPECT_EQ(error_of("vs_1_1\nm4x4 oPos, v0, c93\n"), "p:2:1: c96 does not exist, expected c0 to c95");
+}
+
 // Text and tokens break the same rules; the tokens' places are lines of their disassembly.
 TEST(Validate, TokensAreCheckedLikeText) {
   const json vectors = oracle("invalid_programs.json");

@@ -121,7 +121,8 @@ class VertexValidator {
       reject(program_, instruction, "only c# can be addressed relative to a0.x");
     if (source.relative && !address_written_)
       reject(program_, instruction, "a0.x is read before it is written");
-    const int last = source.index + rows - 1;
+    // Where the rows of a relative matrix lie shows when it runs: what is no constant reads as 0.
+    const int last = source.relative ? source.index : source.index + rows - 1;
     switch (source.file) {
       case RegisterFile::constant:
         return check_index(instruction, source.file, last, kVertexConstants);

@@ -124,6 +124,9 @@ TEST(PixelProgram, CoordinatesOfPs14AreSelectedAndDivided) {
   EXPECT_EQ(run_sampled("ps_1_4\ntexld r2, t1.xyw\nmov r0, r2\n").r0, (Vec4{1, 0, 0.5f, 0.25f}));
   EXPECT_EQ(run_sampled("ps_1_4\ntexcrd r1.rgb, t0\nphase\ntexld r3, r1_dz\nmov r0, r3\n").r0,
             (Vec4{4, 2, 0, 0.375f}));
+  // A divisor of 0 gives 1.
+  EXPECT_EQ(run_sampled("ps_1_4\ntexcrd r1.rgb, t2\nphase\ntexld r3, r1_dz\nmov r0, r3\n").r0,
+            (Vec4{1, 1, 0, 0.375f}));
 }
 
 TEST(PixelProgram, FragmentsAreKilledAndDepthReplaced) {
@@ -142,6 +145,8 @@ TEST(PixelProgram, OnlyWhatNeedsNoCoordinatesSamplesAhead) {
   EXPECT_TRUE(ahead("ps_1_1\ntex t0\ntexcoord t1\nmul r0, t0, t1\n"));
   EXPECT_TRUE(ahead("ps_1_4\ntexld r0, t0\nmov r0, r0\n"));
   EXPECT_FALSE(ahead("ps_1_4\ntexld r0, t1\nmov r0, r0\n"));
+  EXPECT_FALSE(ahead("ps_1_1\ntexcoord t0\ntex t0\nmov r0, t0\n"));
+  EXPECT_FALSE(ahead("ps_1_1\ntex t0\ntexcoord t0\nmov r0, t0\n"));
   EXPECT_FALSE(ahead("ps_1_1\ntexkill t0\nmov r0, v0\n"));
   EXPECT_FALSE(ahead("ps_1_1\ntex t0\ntexbem t1, t0\nmov r0, t1\n"));
 }

@@ -160,7 +160,8 @@ void run_to_1_3(const isa::Instruction& instruction, Registers& registers, const
   }
 }
 
-// The coordinates of texld and texcrd: selected, and divided by the third or fourth component.
+// The coordinates of texld and texcrd: selected, and divided by the third or fourth component; 1 where that
+// is 0 (Direct3D reference, "ps_1_4 Modifiers").
 Register coordinates_1_4(const isa::Source& source, Registers& registers, int count) {
   const Lanes* const from = register_of(registers, source.file, source.index);
   Register result{};
@@ -170,7 +171,10 @@ Register coordinates_1_4(const isa::Source& source, Registers& registers, int co
   if (!by_third && !by_fourth) return result;
   const Lanes& divisor = from[by_third ? 2 : 3];
   for (std::size_t k = 0; k < 2; ++k)
-    for (int i = 0; i < count; ++i) result.component[k][i] /= divisor[i];
+    for (int i = 0; i < count; ++i) {
+      float& coordinate = result.component[k][i];
+      coordinate = divisor[i] == 0 ? 1 : coordinate / divisor[i];
+    }
   std::fill_n(result.component[2], count, 0.0f);
   return result;
 }
