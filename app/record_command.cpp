@@ -21,6 +21,7 @@ struct Options {
 };
 
 void record(const Options& options, bool quiet) {
+  traces::expect_apart({{"-o", options.out}}, {{"SCENE", options.scene}, {"--machine", options.machine}});
   const Machine machine = machine::load(options.machine);
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.scene, loading.callback());

@@ -13,6 +13,7 @@
 #include "studies/own_program.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
+#include "studies/run_files.h"
 #include "studies/run_observers.h"
 #include "traces/output_files.h"
 
@@ -81,7 +82,24 @@ bool simulates_cycles(studies::Fidelity fidelity) {
   return fidelity == studies::Fidelity::cycle || fidelity == studies::Fidelity::referee;
 }
 
+// That no file of the command line is written over another.
+void expect_apart(const Options& options) {
+  std::vector<traces::NamedFile> files{{"INPUT", options.input}, {"--machine", options.machine}};
+  for (const std::string& program : options.programs)
+    files.push_back({"--program", program.substr(program.find('=') + 1)});
+  const studies::ObserveOptions& observe = options.observe;
+  for (const auto& [what, path] : {std::pair{"--timeline", &observe.timeline},
+                                   {"--pipeline", &observe.pipeline},
+                                   {"--counters", &observe.counters}}) {
+    if (path->empty()) continue;
+    traces::expect_apart({{what, *path}}, files);
+    files.push_back({what, *path});
+  }
+  studies::expect_apart_from_results(files, options.out);
+}
+
 void run(const Options& options, bool quiet) {
+  expect_apart(options);
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);

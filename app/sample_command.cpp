@@ -22,6 +22,7 @@ struct Options {
 };
 
 void sample(const Options& options, bool quiet) {
+  traces::expect_apart({{"-o", options.out}}, {{"MESH", options.source.file}});
   { const traces::OutputFile writable(options.out); }  // before the work, not after it
   traces::SampledModel sampled;
   {

@@ -37,12 +37,14 @@ isa::Program valid_shader(const std::string& file) {
 }
 
 void assemble(const ShaderOptions& options) {
+  traces::expect_apart({{"--out", options.out}}, {{"FILE", options.file}});
   const isa::Program program = studies::read_shader(options.file);
   if (!options.no_validate) isa::validate(program);
   traces::write_file(options.out, isa::bytes_of_tokens(isa::write_tokens(program)));
 }
 
 void disassemble(const ShaderOptions& options) {
+  if (!options.out.empty()) traces::expect_apart({{"--out", options.out}}, {{"FILE", options.file}});
   const std::string text = isa::disassemble(studies::read_shader(options.file));
   if (options.out.empty())
     std::cout << text;

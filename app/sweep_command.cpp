@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -35,6 +36,8 @@ void print(const studies::Sweep& sweep) {
 }
 
 void run(const Options& options, bool quiet) {
+  traces::expect_apart({{"a result in --out", std::filesystem::path(options.out) / "results.json"}},
+                       {{"INPUT", options.input}, {"--machine", options.machine}});
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);

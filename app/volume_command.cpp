@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -5,6 +6,7 @@
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "studies/volume_run.h"
+#include "traces/output_files.h"
 
 namespace splatscope::app {
 
@@ -26,6 +28,9 @@ void add_volume_command(CLI::App& app, Invocation& invocation) {
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command->footer("Example: splatscope volume volume-head --out out/head");
   command->callback([options, &invocation] {
+    for (const char* name : {"frame.png", "frame.exr", "results.json"})
+      traces::expect_apart({{"a result in --out", std::filesystem::path(options->out) / name}},
+                           {{"SCENE", options->scene}});
     const auto precision = options->precision == "single" ? studies::Precision::single_precision
                                                           : studies::Precision::double_precision;
     const traces::VolumeScene scene = traces::load_volume_scene(options->scene);

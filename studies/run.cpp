@@ -14,6 +14,7 @@
 #include "studies/reference_comparison.h"
 #include "studies/report/run_report.h"
 #include "studies/roofline.h"
+#include "studies/run_files.h"
 #include "studies/work_queue.h"
 #include "traces/output_files.h"
 #include "traces/scene_text.h"
@@ -29,11 +30,6 @@ constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {{"functional", 
                                                                  {"sampled", Fidelity::sampled},
                                                                  {"cycle", Fidelity::cycle},
                                                                  {"referee", Fidelity::referee}};
-
-// Of the last of `frames` and of the ones before it.
-std::string picture_name(std::size_t number, std::size_t frames) {
-  return number + 1 == frames ? "frame.png" : fmt::format("frame-{:03}.png", number);
-}
 
 Json frames_json(const sim::Result& timing) {
   Json out = Json::array();

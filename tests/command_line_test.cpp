@@ -286,6 +286,44 @@ TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {
   refused({"study", "vertex-data", "--out", "taken"}, "taken: ");
 }
 
+// No file of a command line is written over another: exit 2 before any work, and all as it was.
+TEST(CommandLine, FilesOfOneNameAreRefused) {
+  const ScratchFolder folder;
+  folder.file("in.toml", kSmallScene);
+  folder.file("square.obj", kSquare);
+  folder.file("a.vs", "vs_1_1\nmov oPos, v0\n");
+  std::filesystem::create_hard_link(folder.path() / "in.toml", folder.path() / "hard.toml");
+  folder.file("m.toml", "base = \"radeon-8500\"\n");
+  const auto before = folder.names();
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    expect_refused(run_program(arguments, folder.path()), part);
+    EXPECT_EQ(folder.names(), before);
+    EXPECT_EQ(text_of(folder.path() / "in.toml"), kSmallScene);
+  };
+  refused({"record", "in.toml", "-o", "in.toml"}, "in.toml: is named by -o and by SCENE (in.toml)");
+  refused({"record", "in.toml", "-o", "hard.toml"}, "hard.toml: is named by -o and by SCENE (in.toml)");
+  refused({"record", "in.toml", "-o", "m.toml", "--machine", "m.toml"}, "by -o and by --machine");
+  refused({"sample", "square.obj", "-o", "square.obj"}, "by -o and by MESH");
+  refused({"shader", "assemble", "a.vs", "-o", "./a.vs"}, "by --out and by FILE (a.vs)");
+  refused({"shader", "disassemble", "a.vs", "-o", "a.vs"}, "by --out and by FILE (a.vs)");
+  refused({"run", "in.toml", "--out", "o", "--counters", "in.toml"}, "by --counters and by INPUT");
+  refused({"run", "in.toml", "--out", "o", "--program", "splat_ewa.vs=a.vs", "--pipeline", "a.vs"},
+          "by --pipeline and by --program");
+  refused({"run", "in.toml", "--out", "o", "--counters", "same", "--timeline", "same"},
+          "same: is named by --counters and by --timeline");
+  for (const char* name : {"results.json", "frame.png", "overdraw.exr", "reference.png", "frame-012.png"})
+    refused({"run", "in.toml", "--out", "o", "--timeline", std::string("o/") + name},
+            "by --timeline and by a result in --out");
+  folder.file("results.json", kSmallScene);
+  const std::string results = text_of(folder.path() / "results.json");
+  expect_refused(
+      run_program({"sweep", "results.json", "--sweep", "vertex.units=1,2", "--out", "."}, folder.path()),
+      "by a result in --out and by INPUT");
+  expect_refused(run_program({"volume", "results.json", "--out", "."}, folder.path()),
+                 "by a result in --out and by SCENE");
+  EXPECT_EQ(text_of(folder.path() / "results.json"), results);
+}
+
 // A surfel that cannot be drawn is counted; one that is hard to draw is drawn, and nothing is left in the
 // frame but numbers.
 TEST(CommandLine, ExtremeSurfelsLeaveAFiniteFrame) {

@@ -18,7 +18,27 @@ namespace {
   throw std::runtime_error(fmt::format("{}: writing failed (is the disk full?)", path.string()));
 }
 
+// One file, or one place for a file that is not there yet.
+bool same_place(const fs::path& a, const fs::path& b) {
+  if (a.empty() || b.empty()) return false;
+  std::error_code error;
+  if (fs::exists(a, error) && fs::exists(b, error)) return fs::equivalent(a, b, error);
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
+  return !error && whole_a == fs::weakly_canonical(fs::absolute(b, error), error) && !error;
+}
+
 }  // namespace
+
+void expect_apart(const std::vector<NamedFile>& written, const std::vector<NamedFile>& others) {
+  for (const NamedFile& file : written) {
+    for (const NamedFile& other : others) {
+      if (!same_place(file.path, other.path)) continue;
+      throw UserError(file.path.string(), 0,
+                      fmt::format("is named by {} and by {} ({}), expected a file of its own for each",
+                                  file.what, other.what, other.path.string()));
+    }
+  }
+}
 
 OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
   // The process's number keeps two runs apart that write to the same place; the last one to finish wins.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,16 @@ class OutputFile {
   std::filesystem::path path_;
   std::filesystem::path temporary_;
 };
+
+// A file of a command line, and what names it there: "SCENE", "--counters".
+struct NamedFile {
+  std::string what;
+  std::filesystem::path path;
+};
+
+// Throws UserError where one of `written` has the place of one of `others`, by whatever names and links: to
+// write the one would destroy the other.
+void expect_apart(const std::vector<NamedFile>& written, const std::vector<NamedFile>& others);
 
 // Throws UserError where the place is not writable, std::runtime_error where writing fails later (a full
 // disk).

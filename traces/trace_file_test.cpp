@@ -342,6 +342,34 @@ TEST(OutputFile, LeavesNothingWithoutCommit) {
   fs::remove_all(folder);
 }
 
+TEST(OutputFiles, OfOneNameAreToldApart) {
+  const fs::path folder = scratch("folder");
+  fs::create_directories(folder / "below");
+  write_file(folder / "a.txt", "there");
+  fs::create_hard_link(folder / "a.txt", folder / "hard.txt");
+  fs::create_symlink("a.txt", folder / "soft.txt");
+  fs::create_directory_symlink("below", folder / "link");
+  const auto apart = [&](const fs::path& a, const fs::path& b) {
+    try {
+      expect_apart({{"-o", a}}, {{"FILE", b}});
+    } catch (const UserError& error) {
+      EXPECT_EQ(error.what(),
+                fmt::format("{}: is named by -o and by FILE ({}), expected a file of its own for each",
+                            a.string(), b.string()));
+      return false;
+    }
+    return true;
+  };
+  for (const char* name : {"a.txt", "below/../a.txt", "hard.txt", "soft.txt", "link/../a.txt"})
+    EXPECT_FALSE(apart(folder / name, folder / "a.txt")) << name;
+  EXPECT_FALSE(apart(folder / "link" / "new.txt", folder / "below" / "new.txt"));
+  EXPECT_FALSE(apart("new.txt", fs::absolute("new.txt")));
+  EXPECT_TRUE(apart(folder / "new.txt", folder / "below" / "new.txt"));
+  EXPECT_TRUE(apart(folder / "new.txt", folder / "a.txt"));
+  EXPECT_TRUE(apart("", ""));  // no file at all
+  fs::remove_all(folder);
+}
+
 TEST(OutputFolder, StaysOnlyWithFilesInIt) {
   const fs::path outer = scratch("folder");
   { OutputFolder folder(outer / "a" / "b"); }

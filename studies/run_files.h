@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "traces/output_files.h"
+
+// The names of the files that a run writes into its folder.
+namespace splatscope::studies {
+
+// Of the last of `frames` ("frame.png") and of the ones before it ("frame-000.png", ...).
+std::string picture_name(std::size_t number, std::size_t frames);
+
+// Throws UserError where one of `files` has the place of a result that a run may write into `folder`.
+void expect_apart_from_results(const std::vector<traces::NamedFile>& files,
+                               const std::filesystem::path& folder);
+
+}  // namespace splatscope::studies
