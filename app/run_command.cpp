@@ -109,14 +109,14 @@ void run(const Options& options, bool quiet) {
         "--fidelity", 0,
         fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
   }
-  studies::check(options.observe);
   std::optional<kernels::ScreenMap> map;
   if (options.reference) map = studies::screen_map_by_name(*options.reference);
+  const traces::OutputFolder folder(options.out);  // first: the files below may lie in it
+  studies::check(options.observe);
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.input, loading.callback());
   loading.clear();
   if (map) studies::expect_scene(opened, options.input);
-  const traces::OutputFolder folder(options.out);
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::reference_of(opened, *map);
   ProgressBar recording("recording", quiet);

@@ -210,6 +210,20 @@ TEST(CommandLine, RunWritesATimelineAndCounters) {
   expect_refused(run_program(run, folder.path()), "--fidelity");
 }
 
+// The folder for the results is made first, and goes again where the run fails.
+TEST(CommandLine, ATimelineMayLieInANewFolder) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  std::vector<std::string> run{"run", "small.toml", "--out", "new/o", "--timeline", "new/o/t.json"};
+  const Outcome outcome = run_program(run, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "new/o/t.json"));
+  std::filesystem::remove_all(folder.path() / "new");
+  run[1] = "none.toml";
+  expect_refused(run_program(run, folder.path()), "none.toml");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
+}
+
 TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
