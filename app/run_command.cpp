@@ -171,7 +171,8 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
   command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
       ->capture_default_str();
-  command->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  command->add_option("--out", options->out, "folder for the results; those of an earlier run in it go away")
+      ->capture_default_str();
   command
       ->add_option("--reference", options->reference,
                    "also draw the scene in double precision and compare the frame with it: affine (the "

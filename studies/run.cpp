@@ -399,12 +399,22 @@ void write_reference(const FrameRun& run, const std::filesystem::path& folder) {
   write_png(difference_picture(run.rendered.frame, *run.reference), folder / "difference.png");
 }
 
+std::vector<std::string> result_names(const Input& input, const FrameRun& run) {
+  std::vector<std::string> names{"frame.exr", "depth.exr", "results.json", "report.html"};
+  const std::size_t frames = frame_ends(input.trace).size();
+  for (std::size_t i = 0; i < frames; ++i) names.push_back(picture_name(i, frames));
+  if (run.reference) names.insert(names.end(), {"reference.exr", "reference.png", "difference.png"});
+  for (const HeatMap& map : run.heat_maps) names.push_back(map.name + ".exr");
+  return names;
+}
+
 }  // namespace
 
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder) {
   const nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
   const Image picture = picture_of(run.rendered.frame);
+  remove_other_results(folder, result_names(input, run));
   // Side by side: to compress them takes longer than many a frame.
   oneapi::tbb::parallel_invoke(
       [&] { write_exr(picture, folder / "frame.exr"); }, [&] { write_png(picture, folder / "frame.png"); },

@@ -39,4 +39,14 @@ void expect_apart_from_results(const std::vector<traces::NamedFile>& files, cons
   traces::expect_apart(files, results);
 }
 
+void remove_other_results(const fs::path& folder, const std::vector<std::string>& kept) {
+  std::vector<fs::path> others;  // first all, then remove: the folder is not to change while it is read
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool result = std::ranges::count(kResults, name) > 0 || is_earlier_frame(name);
+    if (result && std::ranges::count(kept, name) == 0 && !entry.is_directory()) others.push_back(entry);
+  }
+  for (const fs::path& other : others) fs::remove(other);
+}
+
 }  // namespace splatscope::studies

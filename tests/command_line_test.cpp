@@ -224,6 +224,40 @@ TEST(CommandLine, ATimelineMayLieInANewFolder) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
 }
 
+// A folder holds one run: pictures that an earlier one wrote and this one does not go away, and nothing else.
+TEST(CommandLine, ALaterRunTakesTheFolderOver) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  Trace frames;
+  frames.width = frames.height = 4;
+  frames.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}};
+  traces::write_trace(frames, folder.path() / "two.trace");
+  const auto names = [&] {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "o"))
+      found.push_back(entry.path().filename().string());
+    std::ranges::sort(found);
+    return found;
+  };
+  const std::vector<std::string> always{"depth.exr", "frame.exr", "frame.png", "report.html", "results.json"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), always.begin(), always.end());
+    std::ranges::sort(more);
+    return more;
+  };
+  ASSERT_EQ(run_program({"run", "two.trace", "--out", "o"}, folder.path()).status, 0);
+  EXPECT_EQ(names(), with({"frame-000.png"}));
+  ASSERT_EQ(
+      run_program({"run", "small.toml", "--out", "o", "--reference", "--heat-maps"}, folder.path()).status,
+      0);
+  EXPECT_EQ(names(), with({"cycles_per_tile.exr", "depth_fails.exr", "difference.png", "overdraw.exr",
+                           "reference.exr", "reference.png", "texel_fetches.exr"}));
+  const std::vector<std::string> own{"frame-0.png", "frame-new.png", "overdraw.png"};
+  for (const std::string& name : own) folder.file("o/" + name, "the user's");
+  ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
+  EXPECT_EQ(names(), with(own));
+}
+
 TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
