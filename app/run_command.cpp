@@ -124,7 +124,7 @@ void run(const Options& options, bool quiet) {
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   library.wait();
   recording.clear();
-  for (const std::string& program : options.programs) studies::replace_program(input.trace, program);
+  studies::replace_programs(input.trace, options.programs);
   studies::RunObservers observers(options.observe, input.trace);
   std::optional<studies::HeatMaps> heat_maps;
   std::vector<sim::Observer*> watching(observers.observers().begin(), observers.observers().end());
@@ -165,8 +165,8 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
       ->allow_extra_args(false);
   command
       ->add_option("--program", options->programs,
-                   "NAME=FILE: a program of one's own in the place of the recorded one, as in "
-                   "splat_ewa.vs=mine.vs")
+                   "NAME=FILE: a program of one's own, text or tokens, in the place of the recorded one, as "
+                   "in splat_ewa.vs=mine.vs")
       ->allow_extra_args(false);
   command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))

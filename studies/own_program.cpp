@@ -3,14 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "model/error.h"
 #include "model/input_file.h"
+#include "model/isa/tokens.h"
+#include "model/isa/validate.h"
+#include "studies/shader_report.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::studies {
 
-void replace_program(Trace& trace, const std::string& assignment) {
+namespace {
+
+// NAME=FILE, where NAME is the program at `place` in the trace.
+struct Replacement {
+  std::size_t place;
+  std::string file;
+};
+
+Replacement replacement_of(const Trace& trace, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   std::string names;
   for (const ShaderText& program : trace.programs) names += (names.empty() ? "" : ", ") + program.name;
@@ -18,12 +30,39 @@ void replace_program(Trace& trace, const std::string& assignment) {
     throw UserError("--program", 0,
                     fmt::format("\"{}\", expected NAME=FILE, where NAME is one of {}", assignment, names));
   }
-  const std::string name = assignment.substr(0, equals), file = assignment.substr(equals + 1);
+  const std::string name = assignment.substr(0, equals);
   const auto found = std::ranges::find(trace.programs, name, &ShaderText::name);
   if (found == trace.programs.end())
     throw UserError("--program", 0, fmt::format("no program \"{}\", expected one of {}", name, names));
-  *found = {file, read_text_file(file, "a program's text")};
-  traces::check_trace(trace, file);
+  return {static_cast<std::size_t>(found - trace.programs.begin()), assignment.substr(equals + 1)};
+}
+
+// Valid by itself. Tokens become text, which is what a trace holds.
+std::string valid_text(const std::string& file) {
+  std::string content = read_text_file(file, "a program as text or tokens");
+  const auto bytes = std::as_bytes(std::span(content));
+  const isa::Program program = shader_of_bytes(bytes, file);
+  isa::validate(program);
+  return isa::looks_like_tokens(bytes) ? isa::disassemble(program) : content;
+}
+
+}  // namespace
+
+void replace_programs(Trace& trace, const std::vector<std::string>& assignments) {
+  std::vector<Replacement> replacements;
+  for (const std::string& assignment : assignments) {
+    const Replacement next = replacement_of(trace, assignment);
+    if (std::ranges::find(replacements, next.place, &Replacement::place) != replacements.end()) {
+      throw UserError(
+          "--program", 0,
+          fmt::format("\"{}\" is given twice, expected one file for it", trace.programs[next.place].name));
+    }
+    replacements.push_back(next);
+  }
+  for (const auto& [place, file] : replacements) {
+    trace.programs[place] = {file, valid_text(file)};
+    traces::check_trace(trace, file);
+  }
 }
 
 }  // namespace splatscope::studies
