@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -20,6 +22,12 @@ struct Options {
   std::string pattern = "own";
   std::string out;
 };
+
+// What CLI::Range lets pass.
+std::string refuse_nan(const std::string& text) {
+  if (!std::isnan(std::strtod(text.c_str(), nullptr))) return {};
+  return fmt::format("\"{}\", expected a number", text);
+}
 
 void sample(const Options& options, bool quiet) {
   traces::expect_apart({{"-o", options.out}}, {{"MESH", options.source.file}});
@@ -54,9 +62,11 @@ void add_sample_command(CLI::App& app, Invocation& invocation) {
       ->add_option("--pattern-scale", source.pattern_scale,
                    "size of a square, stripe or spot, in radii of the model")
       ->check(CLI::Range(1e-4, 10.0))
+      ->check(refuse_nan)
       ->capture_default_str();
   command->add_option("--shading", source.shading, "how far what faces away from the light is darkened")
       ->check(CLI::Range(0.0, 1.0))
+      ->check(refuse_nan)
       ->capture_default_str();
   command->footer("Example: splatscope sample models/bunny.obj -n 50000 --pattern checker -o bunny.ply");
   command->callback([=, &invocation] {

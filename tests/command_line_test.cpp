@@ -91,6 +91,9 @@ TEST(CommandLine, SampleRefusesWhatItCannotUse) {
   expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", "--pattern", "tartan"}, folder.path()),
                  "tartan not in {own,plain,checker");
   expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", "-n", "0"}, folder.path()), "-n: ");
+  for (const std::string option : {"--shading", "--pattern-scale"})
+    expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", option, "nan"}, folder.path()),
+                   option + ": \"nan\", expected a number");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "s.ply"));
 }
 

@@ -6,6 +6,7 @@ namespace {
 TEST(BadInputs, CommandLines) {
   BadInputs inputs;
   inputs.file("tiny.toml", kTinyScene);
+  inputs.file("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string long_word(100000, 'x');
   const std::vector<std::vector<std::string>> bad = {
       {},
@@ -64,14 +65,14 @@ TEST(BadInputs, CommandLines) {
       {"record", "tiny.toml", "-o", "/dev/null"},
       {"record", "tiny.toml", "-o", "x.trace", "--machine", "voodoo"},
       {"sample", "tiny.toml", "-o", "s.ply"},
-      {"sample", "none.obj", "-o", "s.ply", "-n", "0"},
-      {"sample", "none.obj", "-o", "s.ply", "-n", "16777217"},
-      {"sample", "none.obj", "-o", "s.ply", "-n", "nan"},
-      {"sample", "none.obj", "-o", "s.ply", "--shading", "nan"},
-      {"sample", "none.obj", "-o", "s.ply", "--shading", "2"},
-      {"sample", "none.obj", "-o", "s.ply", "--pattern-scale", "nan"},
-      {"sample", "none.obj", "-o", "s.ply", "--pattern-scale", "inf"},
-      {"sample", "none.obj", "-o", "s.ply", "--pattern-scale", "0"},
+      {"sample", "mesh.obj", "-o", "s.ply", "-n", "0"},
+      {"sample", "mesh.obj", "-o", "s.ply", "-n", "16777217"},
+      {"sample", "mesh.obj", "-o", "s.ply", "-n", "nan"},
+      {"sample", "mesh.obj", "-o", "s.ply", "--shading", "nan"},
+      {"sample", "mesh.obj", "-o", "s.ply", "--shading", "2"},
+      {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "nan"},
+      {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "inf"},
+      {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "0"},
       {"explain", "tiny.toml"},
       {"explain", "tiny.toml", "--pixel", "1"},
       {"explain", "tiny.toml", "--pixel", "-1,1"},
