@@ -41,8 +41,7 @@ void run(const Options& options, bool quiet) {
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
-  std::vector<studies::SweptParameter> swept;
-  for (const std::string& text : options.swept) swept.push_back(studies::swept_parameter(text));
+  const auto swept = studies::swept_parameters(options.swept, options.settings);
   std::optional<traces::OutputFolder> folder;
   ProgressBar running("running", quiet);
   const studies::Sweep sweep = studies::run_sweep(options.input, machine, swept, fidelity, options.cache,

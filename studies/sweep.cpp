@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
 #include <thread>
 
 #include "model/error.h"
@@ -41,7 +41,7 @@ std::vector<SweepPoint> combine(const std::vector<SweptParameter>& parameters) {
 
 Machine machine_of(const Machine& machine, const SweepPoint& point) {
   Machine changed = machine;
-  for (const auto& [key, value] : point.settings) machine::set(changed, key + "=" + value);
+  for (const auto& [key, value] : point.settings) machine::set(changed, key + "=" + value, "--sweep");
   return changed;
 }
 
@@ -109,6 +109,22 @@ SweptParameter swept_parameter(std::string_view text) {
   if (parameter.key.empty() || parameter.values.empty())
     throw UserError("--sweep", 0, fmt::format("\"{}\", expected KEY=VALUE,VALUE,...", text));
   return parameter;
+}
+
+std::vector<SweptParameter> swept_parameters(const std::vector<std::string>& texts,
+                                             const std::vector<std::string>& settings) {
+  std::vector<SweptParameter> parameters;
+  for (const std::string& text : texts) {
+    SweptParameter next = swept_parameter(text);
+    if (std::ranges::find(parameters, next.key, &SweptParameter::key) != parameters.end())
+      throw UserError("--sweep", 0, next.key + " is given twice, expected all its values in one --sweep");
+    for (const std::string& setting : settings) {
+      if (setting.starts_with(next.key + "="))
+        throw UserError("--set", 0, next.key + " is swept, expected its values in --sweep alone");
+    }
+    parameters.push_back(std::move(next));
+  }
+  return parameters;
 }
 
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,

@@ -18,6 +18,10 @@ struct SweptParameter {
   std::vector<std::string> values;
 };
 SweptParameter swept_parameter(std::string_view text);
+// Of a command line, where `settings` ("vertex.units=2") hold for all machines. Throws UserError also where a
+// key is swept twice, or swept and set: the last would hold, and the results say another.
+std::vector<SweptParameter> swept_parameters(const std::vector<std::string>& texts,
+                                             const std::vector<std::string>& settings);
 
 // One machine of the sweep.
 struct SweepPoint {

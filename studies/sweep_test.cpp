@@ -89,8 +89,30 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
   EXPECT_THROW(swept_parameter("=1,2"), UserError);
   EXPECT_THROW(swept_parameter("vertex.units="), UserError);
   EXPECT_EQ(swept_parameter("a=1,2,").values, (std::vector<std::string>{"1", "2"}));
-  EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1", "99"}}}, Fidelity::cycle, {}), UserError);
+  try {
+    run_sweep(file, machine, {{"vertex.units", {"1", "99"}}}, Fidelity::cycle, {});
+    ADD_FAILURE() << "a value out of range is used";
+  } catch (const UserError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("--sweep: vertex.units is out of range (99), expected"))
+        << error.what();
+  }
   EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1"}}}, Fidelity::functional, {}), UserError);
+}
+
+TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {
+  const auto error_of = [](const std::vector<std::string>& swept, const std::vector<std::string>& set) {
+    try {
+      swept_parameters(swept, set);
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error_of({"vertex.units=1,2", "memory.channels=1"}, {"vertex.issue_slots=2"}), "");
+  EXPECT_EQ(error_of({"vertex.units=1,2", "vertex.units=3"}, {}),
+            "--sweep: vertex.units is given twice, expected all its values in one --sweep");
+  EXPECT_EQ(error_of({"vertex.units=1,2"}, {"vertex.units=3"}),
+            "--set: vertex.units is swept, expected its values in --sweep alone");
 }
 
 TEST_F(WorkCaches, TheKeyIsOfWhatTheWorkDependsOn) {

@@ -260,8 +260,8 @@ Machine load(std::string_view name_or_path) {
   return parse(read_text_file(name_or_path, "a machine in TOML"), name_or_path);
 }
 
-void set(Machine& machine, std::string_view assignment) {
-  const Place place{"--set", 0};
+void set(Machine& machine, std::string_view assignment, std::string_view option) {
+  const Place place{option, 0};
   const auto equals = assignment.find('=');
   if (equals == std::string_view::npos) {
     place.fail(fmt::format("\"{}\" has no value, expected key=value as in vertex.units=4", assignment));
@@ -282,7 +282,7 @@ void set(Machine& machine, std::string_view assignment) {
   }
   assign(machine, parameter, *table.get("value"), place);
   check_together(machine, place);
-  machine.origins[name] = {"set", "--set", ""};
+  machine.origins[name] = {"set", std::string(option), ""};
 }
 
 std::vector<ParameterValue> describe(const Machine& machine) {

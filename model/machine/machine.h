@@ -151,8 +151,8 @@ Machine load(std::string_view name_or_path);
 // The same from text; `file` is for messages and becomes the machine's name without folder and ".toml".
 Machine parse(std::string_view text, std::string_view file);
 
-// One parameter: "vertex.units=4". UserError (file "--set") where key, type or value is wrong.
-void set(Machine& machine, std::string_view assignment);
+// One parameter: "vertex.units=4". UserError (file `option`) where key, type or value is wrong.
+void set(Machine& machine, std::string_view assignment, std::string_view option = "--set");
 
 // A parameter as `machine show` prints it.
 struct ParameterValue {
