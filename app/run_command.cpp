@@ -67,15 +67,15 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
 }
 
 void print(const studies::Comparison& c) {
-  if (c.pixels_off_edges == 0) {
-    std::cout << fmt::format("  against the reference: PSNR {:.1f} dB over {} pixels, at worst {:.0f}/255\n",
-                             c.psnr, c.surface_pixels, c.worst);
-    return;
+  std::cout << "  against the reference: " << studies::describe_psnr(c);
+  if (c.pixels_off_edges > 0) {
+    std::cout << fmt::format(", {:.1f} dB over the {} of them off edges, at worst {:.0f}/255, ",
+                             c.psnr_off_edges, c.pixels_off_edges, c.worst)
+              << fmt::format("{} of {} pixels inside the silhouette are holes", c.holes, c.inside_pixels);
+  } else if (c.surface_pixels > 0) {
+    std::cout << fmt::format(", at worst {:.0f}/255", c.worst);
   }
-  std::cout << fmt::format(
-      "  against the reference: PSNR {:.1f} dB over {} pixels, {:.1f} dB over the {} of them off edges, at "
-      "worst {:.0f}/255, {} of {} pixels inside the silhouette are holes\n",
-      c.psnr, c.surface_pixels, c.psnr_off_edges, c.pixels_off_edges, c.worst, c.holes, c.inside_pixels);
+  std::cout << '\n';
 }
 
 bool simulates_cycles(studies::Fidelity fidelity) {

@@ -192,6 +192,11 @@ Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& refere
   return out;
 }
 
+std::string describe_psnr(const Comparison& comparison) {
+  if (comparison.surface_pixels == 0) return "no pixel is covered";
+  return fmt::format("PSNR {:.1f} dB over {} pixels", comparison.psnr, comparison.surface_pixels);
+}
+
 Image picture_of(const kernels::SplatSums& reference) {
   Image image(reference.width, reference.height);
   for (std::size_t pixel = 0; pixel < image.pixels.size(); ++pixel) {

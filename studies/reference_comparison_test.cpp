@@ -85,6 +85,14 @@ TEST(ReferenceComparison, tells_pixels_off_edges_apart) {
   EXPECT_NEAR(slope.psnr_off_edges, -10 * std::log10((0.01 + 0.75) / (3.0 * 196)), 1e-4);
 }
 
+TEST(ReferenceComparison, says_so_where_nothing_is_covered) {
+  EXPECT_EQ(describe_psnr({.surface_pixels = 12, .psnr = 40.06}), "PSNR 40.1 dB over 12 pixels");
+  kernels::SplatSums nothing = grey_square();
+  for (auto& sum : nothing.sums) sum = {};
+  EXPECT_TRUE(std::isnan(psnr(grey_frame(), nothing)));
+  EXPECT_EQ(describe_psnr({}), "no pixel is covered");
+}
+
 TEST(ReferenceComparison, maps_have_names) {
   EXPECT_EQ(screen_map_by_name("affine"), kernels::ScreenMap::affine);
   EXPECT_EQ(screen_map_by_name("perspective"), kernels::ScreenMap::perspective);

@@ -261,6 +261,21 @@ TEST(CommandLine, ALaterRunTakesTheFolderOver) {
   EXPECT_EQ(names(), with(own));
 }
 
+TEST(CommandLine, AReferenceThatCoversNothingIsSaidToBeNone) {
+  const ScratchFolder folder;
+  folder.file("away.toml",
+              "[surfels]\ncolumns = 4\nrows = 4\n[camera]\neye = [0, 6, 14]\ntarget = [0, 6, 28]\n"
+              "[frame]\nwidth = 32\nheight = 32\n");
+  const Outcome outcome = run_program(
+      {"run", "away.toml", "--reference", "--fidelity", "functional", "--out", "o"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NE(outcome.out.find("  against the reference: no pixel is covered\n"), std::string::npos)
+      << outcome.out;
+  const std::string report = text_of(folder.path() / "o/report.html");
+  EXPECT_NE(report.find("no pixel is covered"), std::string::npos);
+  EXPECT_EQ(report.find("nan dB"), std::string::npos);
+}
+
 TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);

@@ -30,12 +30,13 @@ void add_picture(Report& report, const FrameRun& run) {
     return;
   }
   const Comparison c = compare(run.rendered.frame, *run.reference);
-  const std::string off_edges =
-      c.pixels_off_edges > 0 ? fmt::format(", {:.1f} dB off edges, {} holes", c.psnr_off_edges, c.holes) : "";
-  report.comparisons(
-      {{{"frame", fmt::format("PSNR {:.1f} dB, at worst {:.0f}/255{}", c.psnr, c.worst, off_edges), picture},
-        picture_of(*run.reference),
-        difference_picture(run.rendered.frame, *run.reference)}});
+  std::string agreement = describe_psnr(c);
+  if (c.surface_pixels > 0) agreement += fmt::format(", at worst {:.0f}/255", c.worst);
+  if (c.pixels_off_edges > 0)
+    agreement += fmt::format(", {:.1f} dB off edges, {} holes", c.psnr_off_edges, c.holes);
+  report.comparisons({{{"frame", agreement, picture},
+                       picture_of(*run.reference),
+                       difference_picture(run.rendered.frame, *run.reference)}});
 }
 
 void add_times(Report& report, const sim::Result& timing) {
