@@ -1,9 +1,9 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "app/commands.h"
@@ -26,7 +26,7 @@ struct ShaderOptions {
   std::string batch;
   std::string registers;
   bool no_validate = false;
-  Arithmetic arithmetic = Arithmetic::ieee;
+  std::string arithmetic = "ieee";
 };
 using Options = std::shared_ptr<ShaderOptions>;
 
@@ -52,11 +52,15 @@ void disassemble(const ShaderOptions& options) {
     traces::write_file(options.out, text);
 }
 
+Arithmetic arithmetic_of(const ShaderOptions& options) {
+  return options.arithmetic == "ieee" ? Arithmetic::ieee : Arithmetic::nv20;
+}
+
 void run_batch(const ShaderOptions& options) {
   std::ifstream cases(options.batch);
   if (!cases || std::filesystem::is_directory(options.batch))
     throw UserError(options.batch, 0, "cannot be read, expected a file of one JSON object a line");
-  studies::run_shader_batch(cases, options.batch, options.arithmetic, std::cout);
+  studies::run_shader_batch(cases, options.batch, arithmetic_of(options), std::cout);
 }
 
 // Registers from a file of one JSON object, or none.
@@ -67,7 +71,7 @@ studies::ShaderCase registers_of(const std::string& file) {
 
 void debug(const ShaderOptions& options) {
   studies::ShaderDebugger debugger(valid_shader(options.file), registers_of(options.registers),
-                                   options.arithmetic);
+                                   arithmetic_of(options));
   debugger.run(std::cin, "standard input", std::cout, isatty(STDIN_FILENO) != 0);
 }
 
@@ -77,6 +81,14 @@ CLI::App* add_part(CLI::App* shader, const Options& options, const char* name, c
   part->add_option("FILE", options->file, "program: assembly text, or Direct3D tokens")->required();
   part->footer(example);
   return part;
+}
+
+void add_arithmetic(CLI::App* part, const Options& options) {
+  part->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee or nv20")
+      ->check([](const std::string& name) -> std::string {
+        return name == "ieee" || name == "nv20" ? "" : fmt::format("\"{}\", expected ieee or nv20", name);
+      })
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -107,19 +119,14 @@ void add_shader_command(CLI::App& app) {
 
   CLI::App* run = shader->add_subcommand("run", "run programs on given registers");
   run->add_option("--batch", options->batch, "cases, one JSON object a line")->required();
-  const std::map<std::string, Arithmetic> arithmetics{{"ieee", Arithmetic::ieee}, {"nv20", Arithmetic::nv20}};
-  run->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee (default) or nv20")
-      ->transform(CLI::CheckedTransformer(arithmetics))
-      ->option_text("ieee|nv20");
+  add_arithmetic(run, options);
   CLI::App* debug_part =
       add_part(shader, options, "debug",
                "step one vertex or fragment through the program; commands from standard input",
                "Example: splatscope shader debug splat.vs --registers case.json < commands.txt");
   debug_part->add_option("--registers", options->registers,
                          "constants, inputs, ... as a case of `run`, without its program");
-  debug_part->add_option("--arithmetic", options->arithmetic, "of vertex programs: ieee (default) or nv20")
-      ->transform(CLI::CheckedTransformer(arithmetics))
-      ->option_text("ieee|nv20");
+  add_arithmetic(debug_part, options);
   debug_part->callback([options] { debug(*options); });
 
   run->footer(

@@ -85,9 +85,11 @@ TEST(ShaderCommand, RunsABatchInEitherArithmetic) {
   EXPECT_EQ(
       run_program({"shader", "run", "--batch", "cases.jsonl", "--arithmetic", "nv20"}, folder.path()).out,
       "{\"id\":\"q\",\"outputs\":{\"oPos\":[\"3f7fffff\",\"3f7fffff\",\"3f7fffff\",\"3f7fffff\"]}}\n");
-  EXPECT_EQ(
-      run_program({"shader", "run", "--batch", "cases.jsonl", "--arithmetic", "bcd"}, folder.path()).status,
-      2);
+  const Outcome wrong =
+      run_program({"shader", "run", "--batch", "cases.jsonl", "--arithmetic", "bcd"}, folder.path());
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.error.find("--arithmetic: \"bcd\", expected ieee or nv20 "), std::string::npos)
+      << wrong.error;
 }
 
 TEST(ShaderCommand, ABatchGoesOnAfterALineThatIsNoCase) {
