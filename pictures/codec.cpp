@@ -14,8 +14,12 @@ const Codec& load() {
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / SPLATSCOPE_MODULE;
   void* library = ::dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
   void* entry = library != nullptr ? ::dlsym(library, "splatscope_picture_codec") : nullptr;
-  if (entry == nullptr)
-    throw std::runtime_error(fmt::format("{}, expected it beside the program", ::dlerror()));
+  if (entry == nullptr) {
+    const std::string reason = ::dlerror();
+    if (!std::filesystem::exists(module))
+      throw std::runtime_error(fmt::format("{}, expected it beside the program", reason));
+    throw std::runtime_error(fmt::format("OpenImageIO's libraries could not be loaded: {}", reason));
+  }
   return reinterpret_cast<const Codec& (*)()>(entry)();
 }
 

@@ -276,6 +276,24 @@ TEST(CommandLine, AReferenceThatCoversNothingIsSaidToBeNone) {
   EXPECT_EQ(report.find("nan dB"), std::string::npos);
 }
 
+// A library of pictures that is not there is told from one that does not load.
+TEST(CommandLine, PicturesWithoutTheirLibraryAreAnError) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const std::string program = (folder.path() / "splatscope").string();
+  std::filesystem::copy_file(SPLATSCOPE_PROGRAM, program);
+  const std::vector<std::string> run{"run", "small.toml", "--fidelity", "functional", "--out", "o"};
+  const Outcome missing = run_program(run, folder.path(), program);
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_NE(missing.error.find(", expected it beside the program\n"), std::string::npos) << missing.error;
+  folder.file("libopen_image_io_module.so", "no library");
+  const Outcome broken = run_program(run, folder.path(), program);
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_NE(broken.error.find("splatscope: OpenImageIO's libraries could not be loaded: "),
+            std::string::npos);
+  EXPECT_EQ(broken.error.find("beside the program"), std::string::npos) << broken.error;
+}
+
 TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);

@@ -61,9 +61,10 @@ struct Outcome {
   std::string error;
 };
 
-// Runs splatscope with the given arguments in the given folder.
+// Runs splatscope, or a copy of it, with the given arguments in the given folder.
 inline Outcome run_program(const std::vector<std::string>& arguments,
-                           const std::filesystem::path& folder = ".") {
+                           const std::filesystem::path& folder = ".",
+                           const std::string& program = SPLATSCOPE_PROGRAM) {
   const auto quoted = [](const std::string& word) {
     std::ostringstream
         text;  // for the shell: a quote within ends the word, stands escaped, and begins it again
@@ -74,7 +75,7 @@ inline Outcome run_program(const std::vector<std::string>& arguments,
   };
   const ScratchFolder scratch;
   const auto out = scratch.path() / "out", error = scratch.path() / "error";
-  std::string command = fmt::format("cd {} && {}", quoted(folder.string()), quoted(SPLATSCOPE_PROGRAM));
+  std::string command = fmt::format("cd {} && {}", quoted(folder.string()), quoted(program));
   for (const std::string& argument : arguments) command += fmt::format(" {}", quoted(argument));
   command += fmt::format(" >{} 2>{}", quoted(out.string()), quoted(error.string()));
   const int status = std::system(command.c_str());
