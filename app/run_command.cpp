@@ -24,7 +24,7 @@ struct Options {
   std::string input;
   std::string machine = "geforce4-ti4400";
   std::string fidelity = "cycle";
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   std::vector<std::string> settings;
   std::vector<std::string> programs;
   std::string out = "out";
@@ -98,17 +98,26 @@ void expect_apart(const Options& options) {
   studies::expect_apart_from_results(files, options.out);
 }
 
+// That the fidelity has a use for the options that are given.
+void expect_used(const Options& options, studies::Fidelity fidelity) {
+  const studies::ObserveOptions& observe = options.observe;
+  if (!(observe.timeline + observe.pipeline + observe.counters).empty() && !simulates_cycles(fidelity)) {
+    throw UserError(
+        "--fidelity", 0,
+        fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
+  }
+  if (options.seed && fidelity != studies::Fidelity::sampled) {
+    throw UserError("--seed", 0,
+                    fmt::format("{} takes no samples, expected --fidelity sampled", options.fidelity));
+  }
+}
+
 void run(const Options& options, bool quiet) {
   expect_apart(options);
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
-  if (!(options.observe.timeline + options.observe.pipeline + options.observe.counters).empty() &&
-      !simulates_cycles(fidelity)) {
-    throw UserError(
-        "--fidelity", 0,
-        fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
-  }
+  expect_used(options, fidelity);
   std::optional<kernels::ScreenMap> map;
   if (options.reference) map = studies::screen_map_by_name(*options.reference);
   const traces::OutputFolder folder(options.out);  // first: the files below may lie in it
@@ -133,10 +142,11 @@ void run(const Options& options, bool quiet) {
     if (heat_maps->observer()) watching.push_back(heat_maps->observer());
   }
   ProgressBar running("running", quiet);
-  studies::FrameRun result = studies::run_frame(
-      input.trace, machine, fidelity, running.callback(),
-      studies::earlier_frames_writer(input.trace, options.out),
-      {.seed = options.seed, .observers = watching, .heat_maps = heat_maps ? &*heat_maps : nullptr});
+  studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback(),
+                                                studies::earlier_frames_writer(input.trace, options.out),
+                                                {.seed = options.seed.value_or(1),
+                                                 .observers = watching,
+                                                 .heat_maps = heat_maps ? &*heat_maps : nullptr});
   running.clear();
   result.reference = std::move(reference);
   const std::vector<std::string> observed = observers.commit();
@@ -146,6 +156,24 @@ void run(const Options& options, bool quiet) {
   std::cout << fmt::format("  frame.png, frame.exr, depth.exr, results.json and report.html in {}\n",
                            options.out);
   for (const std::string& line : observed) std::cout << "  " << line << '\n';
+}
+
+void add_observe_options(CLI::App& command, studies::ObserveOptions& observe) {
+  CLI::Option* timeline = command.add_option("--timeline", observe.timeline,
+                                             "a file for Perfetto: what each unit did when, queues, memory");
+  command.add_option("--timeline-window", observe.window, "FIRST:LAST: core cycles that it shows")
+      ->needs(timeline);
+  CLI::Option* pipeline = command.add_option(
+      "--pipeline", observe.pipeline,
+      "a file for Konata: each instruction of the vertex units, when it waited and issued");
+  command.add_option("--pipeline-window", observe.pipeline_window, "FIRST:LAST: core cycles that it shows")
+      ->needs(pipeline);
+  CLI::Option* counters = command.add_option("--counters", observe.counters,
+                                             "a table (CSV) of shares, statistics and queues over time");
+  command.add_option("--counters-every", observe.counters_every, "core cycles a row of it")
+      ->needs(counters)
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -170,7 +198,7 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
       ->allow_extra_args(false);
   command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
-      ->capture_default_str();
+      ->default_str("1");
   command->add_option("--out", options->out, "folder for the results; those of an earlier run in it go away")
       ->capture_default_str();
   command
@@ -179,18 +207,7 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
                    "screen-space filter, Ren 2002, Eq. 5) or perspective (the exact map)")
       ->expected(0, 1)
       ->default_str("affine");
-  command->add_option("--timeline", options->observe.timeline,
-                      "a file for Perfetto: what each unit did when, queues, memory");
-  command->add_option("--timeline-window", options->observe.window, "FIRST:LAST: core cycles that it shows");
-  command->add_option("--pipeline", options->observe.pipeline,
-                      "a file for Konata: each instruction of the vertex units, when it waited and issued");
-  command->add_option("--pipeline-window", options->observe.pipeline_window,
-                      "FIRST:LAST: core cycles that it shows");
-  command->add_option("--counters", options->observe.counters,
-                      "a table (CSV) of shares, statistics and queues over time");
-  command->add_option("--counters-every", options->observe.counters_every, "core cycles a row of it")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_observe_options(*command, options->observe);
   command->add_flag("--heat-maps", options->heat_maps,
                     "also write where in the frame the work was: overdraw.exr, depth_fails.exr, "
                     "texel_fetches.exr, cycles_per_tile.exr");

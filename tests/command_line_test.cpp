@@ -294,6 +294,26 @@ TEST(CommandLine, PicturesWithoutTheirLibraryAreAnError) {
   EXPECT_EQ(broken.error.find("beside the program"), std::string::npos) << broken.error;
 }
 
+// What an option is about must be there, and of values a key has one.
+TEST(CommandLine, OptionsWithoutAnEffectAreRefused) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const auto refused = [&](const char* command, const std::vector<std::string>& more,
+                           const std::string& part) {
+    std::vector<std::string> arguments{command, "small.toml", "--out", "o"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_refused(run_program(arguments, folder.path()), part);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
+  };
+  refused("run", {"--timeline-window", "1:2"}, "--timeline-window requires --timeline");
+  refused("run", {"--pipeline-window", "1:2"}, "--pipeline-window requires --pipeline");
+  refused("run", {"--counters-every", "10"}, "--counters-every requires --counters");
+  refused("run", {"--seed", "1"}, "--seed: cycle takes no samples, expected --fidelity sampled");
+  refused("sweep", {"--sweep", "vertex.units=1", "--sweep", "vertex.units=2"}, "vertex.units is given twice");
+  refused("sweep", {"--sweep", "vertex.units=1", "--set", "vertex.units=2"}, "vertex.units is swept");
+  refused("sweep", {"--sweep", "vertex.units=99"}, "--sweep: vertex.units is out of range (99)");
+}
+
 TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
