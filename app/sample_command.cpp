@@ -38,8 +38,7 @@ void sample(const Options& options, bool quiet) {
     sampled = traces::sample_source(options.source, "", progress.callback());
   }
   traces::write_ply(sampled.surfels, options.out);
-  std::cout << fmt::format("{}: {} surfels {}\n", options.out, sampled.surfels.size(),
-                           traces::describe(sampled.mesh));
+  std::cout << fmt::format("{}: {}\n", options.out, traces::describe(sampled));
 }
 
 }  // namespace

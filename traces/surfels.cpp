@@ -1,5 +1,7 @@
 #include "traces/surfels.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -100,7 +102,18 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
   options.pattern_scale = source.pattern_scale;
   options.shading = source.shading;
   options.neighbours = source.neighbours;
-  return {sample_model(model, options, progress), counts};
+  ModelSurfels made = sample_model(model, options, progress);
+  SampledModel result{std::move(made.surfels), counts, made.copies, 0};
+  const auto cannot_be_drawn = [](const Surfel& s) { return !(s.radius > 0); };
+  result.zero_radius = static_cast<std::size_t>(std::ranges::count_if(result.surfels, cannot_be_drawn));
+  return result;
+}
+
+std::string describe(const SampledModel& sampled) {
+  std::string text = fmt::format("{} surfels {}", sampled.surfels.size(), describe(sampled.mesh));
+  if (sampled.copies > 0) text += fmt::format(", {} at the place of another", sampled.copies);
+  if (sampled.zero_radius > 0) text += fmt::format(", {} of radius 0", sampled.zero_radius);
+  return text;
 }
 
 Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path& folder,

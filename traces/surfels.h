@@ -20,13 +20,18 @@ struct Surfels {
 Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path& folder,
                      const std::function<void(double)>& progress = {});
 
-// Exactly as many surfels as `source` asks for from the mesh or procedural model that it names, and what was
-// wrong with the mesh.
+// Exactly as many surfels as `source` asks for from the mesh or procedural model that it names, what was
+// wrong with the mesh, and what is wrong with the surfels.
 struct SampledModel {
   std::vector<Surfel> surfels;
   MeshCounts mesh;
+  std::size_t copies = 0;       // surfels that are equal to an earlier one: the mesh has no more places
+  std::size_t zero_radius = 0;  // which cannot be drawn
 };
 SampledModel sample_source(const SurfelSource& source, const std::filesystem::path& folder,
                            const std::function<void(double)>& progress = {});
+
+// "1000 surfels from 1 triangles, 955 at the place of another".
+std::string describe(const SampledModel& sampled);
 
 }  // namespace splatscope::traces

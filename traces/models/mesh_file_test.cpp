@@ -5,12 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <glm/common.hpp>
+#include <numbers>
 
 #include "model/error.h"
 #include "traces/point_file.h"
 #include "traces/scene.h"
+#include "traces/surfels.h"
 
 namespace splatscope::traces {
 namespace {
@@ -54,6 +57,31 @@ TEST_F(MeshFileTest, PolygonsBecomeSurfels) {
     EXPECT_EQ(s.position.z, 0);
     EXPECT_TRUE(s.position.x >= 0 && s.position.x <= 1 && s.position.y >= 0 && s.position.y <= 1);
   }
+}
+
+// Near 1000 binary32 has steps of 6e-5.
+constexpr std::string_view kTiny =
+    "v 1000 1000 1000\nv 1000.0005 1000 1000\nv 1000 1000.0005 1000\nf 1 2 3\n";
+
+TEST_F(MeshFileTest, WhatFindsNoPlaceIsCounted) {
+  const Scene scene = scene_of("tiny.obj", kTiny, "count = 1000\n");
+  EXPECT_EQ(scene.surfels.size(), 45u);
+  EXPECT_EQ(scene.skipped.duplicate, 955u);
+  SurfelSource source = default_settings().surfels;
+  source.file = "tiny.obj";
+  source.count = 1000;
+  const SampledModel sampled = sample_source(source, folder_);
+  EXPECT_EQ(describe(sampled),
+            "1000 surfels from 1 triangles, 3 normals computed, 955 at the place of another");
+  for (const Surfel& s : sampled.surfels) ASSERT_GT(s.radius, 8e-5f) << "a step and more";
+  EXPECT_EQ(describe(SampledModel{{}, {.triangles = 2}, 0, 3}), "0 surfels from 2 triangles, 3 of radius 0");
+}
+
+TEST_F(MeshFileTest, ASurfelAloneIsAsLargeAsTheMesh) {
+  const Scene scene = scene_of("square.obj", kSquare, "count = 1\n");
+  ASSERT_EQ(scene.surfels.size(), 1u);
+  EXPECT_NEAR(scene.surfels[0].radius, std::sqrt(1 / std::numbers::pi), 1e-6);
+  EXPECT_EQ(parse_scene("[surfels]\ngenerator = \"sphere\"\ncount = 1\n", "s.toml").surfels.size(), 1u);
 }
 
 TEST_F(MeshFileTest, APlyWithFacesIsAMeshAndOneWithoutIsPoints) {

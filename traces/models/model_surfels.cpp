@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "model/stop.h"
 #include "traces/models/sampler.h"
@@ -37,15 +38,34 @@ float light_on(const glm::vec3& normal, double shading) {
   return static_cast<float>(1 - shading * (1 - facing));
 }
 
+double area_of(const Mesh& mesh) {
+  double twice = 0;
+  for (const auto& [a, b, c] : corners_of(mesh))
+    twice += glm::length(glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)));
+  return 0.5 * twice;
+}
+
+// Copies have the radius of what they are copies of: counted as neighbours they would make it smaller.
+void set_radii(const Mesh& mesh, const MeshSamples& samples, int neighbours, std::span<Surfel> surfels) {
+  const std::size_t distinct = samples.distinct();
+  if (distinct == 1)
+    surfels[0].radius = static_cast<float>(std::sqrt(area_of(mesh) / std::numbers::pi));
+  else
+    estimate_radii(surfels.first(distinct), neighbours);
+  for (std::size_t i = distinct; i < surfels.size(); ++i)
+    surfels[i].radius = surfels[samples.copy_of[i - distinct]].radius;
+}
+
 }  // namespace
 
-std::vector<Surfel> sample_model(const Model& model, const ModelOptions& options,
-                                 const std::function<void(double)>& progress) {
+ModelSurfels sample_model(const Model& model, const ModelOptions& options,
+                          const std::function<void(double)>& progress) {
   SamplerOptions sampler;
   sampler.count = options.count;
-  const std::vector<MeshSample> samples = sample(model.mesh, sampler, progress);
+  const MeshSamples sampled = sample(model.mesh, sampler, progress);
+  const std::vector<MeshSample>& samples = sampled.points;
   std::vector<Surfel> surfels(samples.size());
-  if (surfels.empty()) return surfels;
+  if (surfels.empty()) return {};
   const Sphere sphere = bounding_sphere(samples);
   const double unit = sphere.radius * options.pattern_scale;
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
@@ -59,8 +79,8 @@ std::vector<Surfel> sample_model(const Model& model, const ModelOptions& options
     surfels[i].normal = point.normal;
     surfels[i].color = light_on(point.normal, options.shading) * glm::clamp(color, 0.0f, 1.0f);
   });
-  estimate_radii(surfels, options.neighbours);
-  return surfels;
+  set_radii(model.mesh, sampled, options.neighbours, surfels);
+  return {std::move(surfels), sampled.copy_of.size()};
 }
 
 }  // namespace splatscope::traces

@@ -9,6 +9,7 @@
 #include <queue>
 
 #include "model/stop.h"
+#include "traces/models/distinct_places.h"
 #include "traces/models/relax.h"
 #include "traces/models/triangle.h"
 #include "traces/models/voxels.h"
@@ -74,7 +75,7 @@ class Sampler {
     next_.reserve(options.count);
   }
 
-  std::vector<MeshSample> run(const std::function<void(double)>& progress) {
+  MeshSamples run(const std::function<void(double)>& progress) {
     constexpr std::size_t kReport = 4096;  // points between two
     std::vector<Entry> entries;
     entries.reserve(states_.size());
@@ -89,8 +90,9 @@ class Sampler {
       take_point(cell);
       heap.push(entry(cell));
     }
-    std::vector<MeshSample> samples = in_order();
-    relax(mesh_, voxels_, index_, options_.relaxations, samples);
+    MeshSamples samples{in_order(), {}};
+    relax(mesh_, voxels_, index_, options_.relaxations, samples.points);
+    part(samples);
     return samples;
   }
 
@@ -201,6 +203,50 @@ class Sampler {
     return out;
   }
 
+  // Points meet in corners, which are closest to many places. All but the first go back to where they were
+  // placed; or else to another place in the cell, or in any.
+  void part(MeshSamples& samples) const {
+    DistinctPlaces places(samples.points);
+    if (places.copies().empty()) return;
+    const std::vector<MeshSample> placed = in_order();
+    std::vector<PlaceCopy> stuck;
+    bool full = false;  // a long search found nothing: the mesh has no place left, or next to none
+    std::size_t cell = 0, end = states_[0].samples;  // of the cell's points
+    for (const PlaceCopy& copy : places.copies()) {
+      stop_if_asked();
+      while (copy.point >= end) end += states_[++cell].samples;
+      MeshSample& point = samples.points[copy.point];
+      if (places.take(placed[copy.point].position)) {
+        point = placed[copy.point];
+      } else if (full || !(settle(point, cell, places) || settle_anywhere(point, copy.point, places))) {
+        full = true;
+        stuck.push_back(copy);
+      }
+    }
+    to_the_end(stuck, samples);
+  }
+
+  bool settle(MeshSample& point, std::size_t cell, DistinctPlaces& places) const {
+    constexpr std::size_t kTries = 64;
+    const std::size_t tried = kPlaces + states_[cell].samples;
+    for (std::size_t i = 0; i < kTries; ++i) {
+      const MeshSample place = try_place(seen(cell), tried + i);
+      if (!places.take(place.position)) continue;
+      point = place;
+      return true;
+    }
+    return false;
+  }
+
+  bool settle_anywhere(MeshSample& point, std::size_t number, DistinctPlaces& places) const {
+    constexpr std::size_t kCells = 64;
+    for (std::size_t i = 0; i < kCells; ++i) {
+      stop_if_asked();
+      if (settle(point, scramble(kCells * number + i) % states_.size(), places)) return true;
+    }
+    return false;
+  }
+
   const TriangleCorners mesh_;
   const SamplerOptions& options_;
   Voxels voxels_;
@@ -228,8 +274,8 @@ glm::dvec3 even_distribution(const SampledCell& cell, std::size_t index) {
   return glm::fract(shift + static_cast<double>(index + 1) * kStep);
 }
 
-std::vector<MeshSample> sample(const Mesh& mesh, const SamplerOptions& options,
-                               const std::function<void(double)>& progress) {
+MeshSamples sample(const Mesh& mesh, const SamplerOptions& options,
+                   const std::function<void(double)>& progress) {
   if (options.count == 0) return {};
   return Sampler(mesh, options).run(progress);
 }

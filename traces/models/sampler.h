@@ -46,12 +46,22 @@ struct SamplerOptions {
   int relaxations = kRelaxations;  // rounds in which the points give way to each other (relax.h)
 };
 
+struct MeshSamples {
+  std::vector<MeshSample> points;
+  // Of the last of them, which found no place of their own: the number of the point that each is a copy of.
+  // Empty unless the mesh has hardly as many places that differ in binary32.
+  std::vector<std::uint32_t> copy_of;
+
+  std::size_t distinct() const { return points.size() - copy_of.size(); }
+};
+
 // Exactly `count` points, ordered by cells so that neighbours are near each other in memory. Of a few places
 // in the chosen cell, each projected to the closest point of the cell's triangles, the one furthest from the
-// points around is taken; then the points give way to each other along the surface. Needs a mended mesh
-// (mesh.h) with at least one triangle, or count 0. The same result for any number of threads; `priority` and
-// `distribution` may be called from several at once.
-std::vector<MeshSample> sample(const Mesh& mesh, const SamplerOptions& options,
-                               const std::function<void(double)>& progress = {});
+// points around is taken; then the points give way to each other along the surface. No two have the same
+// position but where copy_of says so. Needs a mended mesh (mesh.h) with at least one triangle, or count 0.
+// The same result for any number of threads; `priority` and `distribution` may be called from several at
+// once.
+MeshSamples sample(const Mesh& mesh, const SamplerOptions& options,
+                   const std::function<void(double)>& progress = {});
 
 }  // namespace splatscope::traces

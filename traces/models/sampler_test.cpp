@@ -4,8 +4,11 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <set>
+#include <utility>
 
 #include "traces/models/parametric.h"
 #include "traces/models/triangle.h"
@@ -23,7 +26,7 @@ Mesh ball(int cells) {
 std::vector<MeshSample> sample_count(const Mesh& mesh, std::size_t count) {
   SamplerOptions options;
   options.count = count;
-  return sample(mesh, options);
+  return sample(mesh, options).points;
 }
 
 TEST(Sampler, GivesExactlyAsManyPointsAsAskedForOnTheSurface) {
@@ -41,13 +44,71 @@ TEST(Sampler, GivesExactlyAsManyPointsAsAskedForOnTheSurface) {
   }
 }
 
+std::size_t distinct_positions(const std::vector<MeshSample>& points) {
+  std::set<std::array<float, 3>> positions;
+  for (const MeshSample& p : points) positions.insert({p.position.x, p.position.y, p.position.z});
+  return positions.size();
+}
+
+Mesh triangle_at(float x, float y, float edge) {
+  Mesh mesh;
+  mesh.positions = {{x, y, x}, {x + edge, y, x}, {x, y + edge, x}};
+  mesh.triangles = {{0, 1, 2}};
+  mend(mesh);
+  return mesh;
+}
+
+// Tiny triangles that hang together nowhere.
+Mesh crumbs(int edge) {
+  Mesh mesh;
+  for (int i = 0; i < edge * edge; ++i)
+    append(mesh, triangle_at(static_cast<float>(i % edge), static_cast<float>(i / edge), 0.002f), 0);
+  return mesh;
+}
+
+// Points meet in the corners of meshes with borders.
+TEST(Sampler, NoTwoPointsHaveTheSamePosition) {
+  Mesh square;
+  square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mend(square);
+  for (const auto& [mesh, count] : {std::pair(square, 100000u), std::pair(crumbs(40), 60000u)}) {
+    SamplerOptions options;
+    options.count = count;
+    const MeshSamples samples = sample(mesh, options);
+    EXPECT_TRUE(samples.copy_of.empty());
+    EXPECT_EQ(distinct_positions(samples.points), count) << mesh.triangles.size() << " triangles";
+  }
+}
+
+// Near 1000 binary32 has steps of 6e-5: the triangle has 45 places, and takes them all.
+TEST(Sampler, WhatHasNoPlaceOfItsOwnIsACopy) {
+  const Mesh mesh = triangle_at(1000, 1000, 0.0005f);
+  SamplerOptions options;
+  for (std::size_t count : {40u, 45u, 46u, 1000u}) {
+    options.count = count;
+    const MeshSamples samples = sample(mesh, options);
+    ASSERT_EQ(samples.points.size(), count);
+    EXPECT_EQ(samples.distinct(), std::min<std::size_t>(count, 45));
+    EXPECT_EQ(distinct_positions(samples.points), samples.distinct());
+    for (std::size_t i = 0; i < samples.copy_of.size(); ++i) {
+      const MeshSample &copy = samples.points[samples.distinct() + i],
+                       &of = samples.points[samples.copy_of[i]];
+      ASSERT_LT(samples.copy_of[i], samples.distinct());
+      ASSERT_EQ(copy.position, of.position);
+      ASSERT_EQ(copy.triangle, of.triangle);
+      ASSERT_EQ(copy.weights, of.weights);
+    }
+  }
+}
+
 // Far more points than the tree can have cells, and than there are places tried at first.
 TEST(Sampler, GoesOnWhereTheTreeIsCutShort) {
   const Mesh mesh = ball(8);
   SamplerOptions options;
   options.count = 1000;
   options.depth = 3;
-  EXPECT_EQ(sample(mesh, options).size(), 1000u);
+  EXPECT_EQ(sample(mesh, options).points.size(), 1000u);
 }
 
 TEST(Sampler, DoesNotDependOnTheNumberOfThreads) {
@@ -120,9 +181,9 @@ TEST(Sampler, RelaxationEvensTheSumsOfSplats) {
     const Mesh mesh = ball(cells);
     SamplerOptions options;
     options.count = 3000;
-    const double relaxed = unevenness(sample(mesh, options));
+    const double relaxed = unevenness(sample(mesh, options).points);
     options.relaxations = 0;
-    const double before = unevenness(sample(mesh, options));
+    const double before = unevenness(sample(mesh, options).points);
     EXPECT_LT(relaxed, 0.5 * before) << cells << " cells; before: " << before;
   }
 }
@@ -132,12 +193,12 @@ TEST(Sampler, PriorityAndDistributionCanBeReplaced) {
   SamplerOptions options;
   options.count = 500;
   options.priority = [](const SampledCell& cell) { return cell.center.y > 0 ? 1.0 : 0.0; };
-  for (const MeshSample& s : sample(mesh, options)) EXPECT_GT(s.position.y, -0.3f);
+  for (const MeshSample& s : sample(mesh, options).points) EXPECT_GT(s.position.y, -0.3f);
   options.priority = unsampled_triangles;
   options.depth = 0;  // one cell, the whole ball: every place is projected from its corner
   options.count = 1;
   options.distribution = [](const SampledCell&, std::size_t) { return glm::dvec3(1, 1, 1); };
-  const auto corner = sample(mesh, options);
+  const auto corner = sample(mesh, options).points;
   EXPECT_GT(glm::dot(glm::dvec3(corner[0].position), glm::normalize(glm::dvec3(1, 1, 1))), 0.98);
 }
 
