@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <memory>
 
 #include "model/error.h"
 #include "model/stop.h"
@@ -18,11 +17,13 @@
 namespace splatscope::traces {
 namespace {
 
-// The values after the header, one at a time.
+// The values after the header, one at a time. In ASCII those of each vertex, or other thing, are a line.
 class PlyValues {
  public:
   virtual ~PlyValues() = default;
+  virtual void begin_row(const PlyElement&) {}
   virtual double next(PlyType type) = 0;
+  virtual void end_row() {}
   // Says where the reader is and throws.
   [[noreturn]] virtual void fail(std::string_view what, std::string_view expected) const = 0;
 };
@@ -32,6 +33,13 @@ class AsciiValues : public PlyValues {
   AsciiValues(std::istream& in, std::string_view file, int line)
       : in_(*in.rdbuf()), file_(file), line_(line + 1) {}
 
+  // Lines without a word are passed over.
+  void begin_row(const PlyElement& element) override {
+    element_ = &element;
+    read_ = 0;
+    if (!skip_blank_lines()) fail("the file ends within its data", "a number");
+  }
+
   // The type is not enforced: an ASCII file's numbers are what they are.
   double next(PlyType) override {
     const std::string_view word = next_word();
@@ -40,7 +48,20 @@ class AsciiValues : public PlyValues {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || end != digits.data() + digits.size())
       fail(fmt::format("\"{}\" is no number", word), "a number");
+    ++read_;
     return value;
+  }
+
+  void end_row() override {
+    const std::size_t expected = read_;
+    for (; !at_line_end(); ++read_)
+      for (int c = in_.sgetc(); c != kEnd && !is_space(c) && c != '\n'; c = in_.snextc()) stop_if_asked();
+    if (read_ != expected) fail(numbers(read_), fmt::format("{}", expected));
+  }
+
+  // Nothing but blank lines may follow.
+  void end() {
+    if (skip_blank_lines()) fail("a line more than the header counts", "the end of the file");
   }
 
   [[noreturn]] void fail(std::string_view what, std::string_view expected) const override {
@@ -48,24 +69,48 @@ class AsciiValues : public PlyValues {
   }
 
  private:
-  static bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+  static constexpr int kEnd = std::char_traits<char>::eof();
+
+  static bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+  static std::string numbers(std::size_t count) {
+    return fmt::format("{} number{}", count, count == 1 ? "" : "s");
+  }
+
+  bool at_line_end() {
+    int c = in_.sgetc();
+    while (is_space(c)) c = in_.snextc();
+    return c == '\n' || c == kEnd;
+  }
+
+  // False at the end of the file.
+  bool skip_blank_lines() {
+    while (at_line_end()) {
+      stop_if_asked();
+      if (in_.sbumpc() == kEnd) return false;
+      ++line_;
+    }
+    return true;
+  }
 
   std::string_view next_word() {
-    constexpr int kEnd = std::char_traits<char>::eof();
-    int c = in_.sgetc();
-    for (; is_space(c); c = in_.snextc()) line_ += c == '\n';
+    if (at_line_end()) {
+      const bool has_list = std::ranges::any_of(element_->properties, &PlyProperty::is_list);
+      fail(numbers(read_), has_list ? "more" : fmt::format("{}", element_->properties.size()));
+    }
     std::size_t size = 0;
-    for (; c != kEnd && !is_space(c); c = in_.snextc()) {
+    for (int c = in_.sgetc(); c != kEnd && c != '\n' && !is_space(c); c = in_.snextc()) {
       if (size == sizeof word_) fail("a word does not end", "a number");
       word_[size++] = static_cast<char>(c);
     }
-    if (size == 0) fail("the file ends within its data", "a number");
     return {word_, size};
   }
 
   std::streambuf& in_;
   std::string_view file_;
   int line_;
+  const PlyElement* element_ = nullptr;  // of the row
+  std::size_t read_ = 0;                 // numbers of the row
   char word_[64];
 };
 
@@ -156,9 +201,12 @@ void skip_list(PlyValues& values, const PlyProperty& property) {
 
 void skip_element(PlyValues& values, const PlyElement& element) {
   if (element.properties.empty()) return;
-  for (std::uint64_t i = 0; i < element.count; ++i)
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    values.begin_row(element);
     for (const PlyProperty& property : element.properties)
       property.is_list ? skip_list(values, property) : static_cast<void>(values.next(property.type));
+    values.end_row();
+  }
 }
 
 // One pass over the properties of a surfel, decided once for all of them.
@@ -180,6 +228,7 @@ void read_surfels(PlyValues& values, const PlyElement& element, bool has_values,
                        1 / full_scale(property)});
   for (std::uint64_t i = 0; i < element.count; ++i) {
     stop_if_asked();
+    values.begin_row(element);
     for (const Column& column : columns) {
       if (column.property->is_list) {
         skip_list(values, *column.property);
@@ -188,6 +237,7 @@ void read_surfels(PlyValues& values, const PlyElement& element, bool has_values,
         if (column.place) *column.place = static_cast<float>(number * column.scale);
       }
     }
+    values.end_row();
     points.surfels.push_back(surfel);
     if (has_values) points.values.push_back(value);
   }
@@ -287,13 +337,20 @@ PointFile read_ply(const std::filesystem::path& path) {
   check_size(header, *vertex, file_size, file);
   if (vertex->count > kMostSurfels)
     throw UserError(file, 0, fmt::format("{} vertices, expected at most {}", vertex->count, kMostSurfels));
-  std::unique_ptr<PlyValues> values;
-  if (header.encoding == PlyEncoding::ascii)
-    values = std::make_unique<AsciiValues>(in, file, header.lines);
-  else
-    values = std::make_unique<BinaryValues>(in, file, header.encoding == PlyEncoding::binary_big_endian);
-  for (auto element = header.elements.begin(); element != vertex; ++element) skip_element(*values, *element);
-  read_surfels(*values, *vertex, has_group(*vertex, {"value"}, file), points);
+  const bool has_values = has_group(*vertex, {"value"}, file);
+  const auto read_to_vertices = [&](PlyValues& values) {
+    for (auto element = header.elements.begin(); element != vertex; ++element) skip_element(values, *element);
+    read_surfels(values, *vertex, has_values, points);
+  };
+  if (header.encoding != PlyEncoding::ascii) {
+    BinaryValues values(in, file, header.encoding == PlyEncoding::binary_big_endian);
+    read_to_vertices(values);
+    return points;
+  }
+  AsciiValues values(in, file, header.lines);
+  read_to_vertices(values);
+  for (auto element = vertex + 1; element != header.elements.end(); ++element) skip_element(values, *element);
+  values.end();
   return points;
 }
 

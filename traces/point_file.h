@@ -22,9 +22,10 @@ inline constexpr std::uint64_t kMostSurfels = 1 << 26;  // of a file
 // Reads the element "vertex" of a PLY file (ASCII, or binary of either byte order): x y z, and where they are
 // there nx ny nz, radius, red green blue, value. Order and type of the properties are free; others, lists
 // too, are passed over, as are other elements. Colours of an integer type are divided by their full scale
-// (ushort: 65535, else 255). Throws UserError "file:line: ..." (header, ASCII) or "file: ... at byte N ..."
-// (binary): missing, truncated, not PLY, x, y or z absent, half a group given. Memory is bounded by a small
-// multiple of the file's size.
+// (ushort: 65535, else 255). A line of an ASCII file is a row, unless it is blank. Throws UserError
+// "file:line: ..." (header, ASCII) or "file: ... at byte N ..." (binary): missing, truncated, not PLY, x, y
+// or z absent, half a group given; in ASCII also a row of another length, and rows that the header does not
+// count. Memory is bounded by a small multiple of the file's size.
 PointFile read_ply(const std::filesystem::path& path);
 
 // Whether a PLY file has an element "face" that is not empty: a mesh. Throws UserError where the header is

@@ -136,7 +136,7 @@ TEST_F(PointFileTest, ErrorsNameLineOrByte) {
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"),
             ":3: the file ends within the header, expected \"end_header\"");
   EXPECT_EQ(error_of("ply\n" + std::string(5000, 'x')).find(":2: the header does not end"), 0u);
-  EXPECT_EQ(error_of(ascii.substr(0, ascii.size() - 1)),
+  EXPECT_EQ(error_of(ascii.substr(0, ascii.size() - 12)),
             ":14: the file ends within its data, expected a number");
   std::string word = ascii;
   word.replace(word.find("nan"), 3, "1,5");
@@ -145,6 +145,26 @@ TEST_F(PointFileTest, ErrorsNameLineOrByte) {
   EXPECT_EQ(error_of(binary.substr(0, binary.size() - 1)),
             fmt::format(": the file ends within its data at byte {}, expected a value of 4 bytes",
                         binary.size() - 4));
+}
+
+// A line is a vertex: numbers that are missing or too many would shift all that follow.
+TEST_F(PointFileTest, RowsOfTheWrongLengthAreRefused) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement a 1\nproperty list int int i\nproperty int j\nelement vertex 2\n"
+      "property float x\nproperty float y\nproperty float z\nelement b 1\nproperty int k\nend_header\n";
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2 3\n4 5 6\n9\n"), "no error");
+  EXPECT_EQ(error_of(head + "\n2 7 7 5\n \n1 2 3\r\n\n4 5 6 \t\n9\n \n\n\t"), "no error") << "blank lines";
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2 3 4\n4 5 6\n9\n"), ":14: 4 numbers, expected 3");
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2\n3 4 5 6\n9\n"), ":14: 2 numbers, expected 3");
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2 3\n4\n9\n"), ":15: 1 number, expected 3");
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2 3 4 5 6\n9\n"), ":14: 6 numbers, expected 3");
+  EXPECT_EQ(error_of(head + "2 7 7 5 5\n1 2 3\n4 5 6\n9\n"), ":13: 5 numbers, expected 4");
+  EXPECT_EQ(error_of(head + "2 7 7\n5\n1 2 3\n4 5 6\n9\n"), ":13: 3 numbers, expected more");
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2 3\n4 5 6\n9 9\n"), ":16: 2 numbers, expected 1");
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2 3\n4 5 6\n"),
+            ":16: the file ends within its data, expected a number");
+  EXPECT_EQ(error_of(head + "2 7 7 5\n1 2 3\n4 5 6\n9\n\n7 8 9\n"),
+            ":18: a line more than the header counts, expected the end of the file");
 }
 
 TEST_F(PointFileTest, HalfAGroupIsRefused) {
@@ -171,7 +191,8 @@ TEST_F(PointFileTest, AbsurdCountsAreRefused) {
   EXPECT_NE(error_of(head + "element vertex 99999999999999999999\n" + xyz).find(":3: wrong element"),
             std::string::npos);
   EXPECT_EQ(error_of(head + "element a 18446744073709551615\nelement vertex 1\n" + xyz), "no error");
-  EXPECT_NE(error_of(head + "element a 18446744073709551615\nproperty int i\nelement vertex 1\n" + xyz)
+  EXPECT_NE(error_of(head + "element a 18446744073709551615\nproperty int i\nelement vertex 1\n" +
+                     xyz.substr(0, xyz.size() - 6) + "0\n")
                 .find("the file ends within its data"),
             std::string::npos);
   EXPECT_NE(error_of(head + "element a 1\nproperty list int int i\nelement vertex 1\n" +
@@ -256,11 +277,11 @@ TEST_F(PointFileTest, PointsOnOnePlaceOrLineAreLeftOut) {
         "end_header\n{}",
         count, rows);
   };
-  const SkipCounts one_place = scene_of(file(3, "1 1 1 1 1 1 1 1 1")).skipped;
+  const SkipCounts one_place = scene_of(file(3, "1 1 1\n1 1 1\n1 1 1")).skipped;
   EXPECT_EQ(one_place.duplicate, 2u);
   EXPECT_EQ(one_place.zero_radius, 1u);
   EXPECT_EQ(scene_of(file(1, "1 1 1")).skipped.zero_radius, 1u);
-  EXPECT_EQ(scene_of(file(3, "1 1 1 2 2 2 3 3 3")).skipped.zero_normal, 3u);
+  EXPECT_EQ(scene_of(file(3, "1 1 1\n2 2 2\n3 3 3")).skipped.zero_normal, 3u);
   EXPECT_TRUE(scene_of(file(0, "")).surfels.empty());
 }
 
