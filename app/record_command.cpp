@@ -36,7 +36,7 @@ void record(const Options& options, bool quiet) {
   traces::write_trace(input.trace, options.out);
   std::cout << (input.volume ? fmt::format("{}: {}\n", options.out, traces::describe(*input.volume))
                              : fmt::format("{}: {} surfels, {}\n", options.out, input.recorded->surfels,
-                                           traces::describe(input.skipped)));
+                                           traces::describe(input.skipped, input.estimated)));
 }
 
 }  // namespace

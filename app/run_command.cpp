@@ -36,7 +36,8 @@ struct Options {
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
   std::cout << fmt::format("{} on {}\n", input.name, machine.title);
   if (input.recorded)
-    std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels, traces::describe(input.skipped));
+    std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels,
+                             traces::describe(input.skipped, input.estimated));
   if (input.recorded && !input.recorded->blocks.surfels_by_level.empty())
     std::cout << fmt::format("  {}\n", traces::describe(input.recorded->blocks));
   if (input.recorded && input.recorded->weights_captured > 0)

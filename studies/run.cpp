@@ -151,8 +151,11 @@ Json blocks_json(const traces::BlockCounts& blocks) {
           {"surfels_facing_away", blocks.facing_away}};
 }
 
-Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped) {
+Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped,
+                  const traces::EstimateCounts& estimated) {
   return {{"drawn", recorded.surfels},
+          {"normals_estimated", estimated.normals},
+          {"radii_estimated", estimated.radii},
           {"blocks", blocks_json(recorded.blocks)},
           {"weights_captured", recorded.weights_captured},
           {"weights_at_edges", recorded.weights_at_edges},
@@ -211,14 +214,16 @@ kernels::ScreenSpacePicture reference_of(const Opened& opened, kernels::ScreenMa
 }
 
 Input make_input(Opened opened, const std::string& name, const Machine& machine, const Progress& progress) {
-  if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}, {}, {}};
+  if (auto* trace = std::get_if<Trace>(&opened)) return {name, std::move(*trace), {}, {}, {}, {}, {}};
   if (const auto* scene = std::get_if<traces::VolumeScene>(&opened)) {
     traces::VolumeTrace recorded = traces::record(*scene);
-    return {scene->name, std::move(recorded.trace), {}, {}, {}, recorded};
+    return {scene->name, std::move(recorded.trace), {}, {}, {}, {}, recorded};
   }
   const traces::Scene& scene = std::get<traces::Scene>(opened);
   traces::Recording recording = traces::record(scene, machine.numbers, progress);
-  return {scene.name, std::move(recording.trace), recording.counts, scene.skipped, scene.mesh, {}};
+  return {
+      scene.name, std::move(recording.trace), recording.counts, scene.skipped, scene.estimated, scene.mesh,
+      {}};
 }
 
 sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
@@ -372,7 +377,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
     results["roofline"] = json_of(ceilings(machine, *run.timing));
   }
   if (!run.heat_maps.empty()) results["heat_maps"] = json_of(run.heat_maps);
-  if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped);
+  if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped, input.estimated);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
   if (input.volume) results["volume"] = volume_json(*input.volume);
   if (run.reference) results["reference"] = reference_json(run.rendered.frame, *run.reference);

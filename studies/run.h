@@ -36,6 +36,7 @@ struct Input {
   Trace trace;
   std::optional<traces::RecordCounts> recorded;
   traces::SkipCounts skipped;
+  traces::EstimateCounts estimated;
   traces::MeshCounts mesh;
   std::optional<traces::VolumeCounts> volume;
 };

@@ -132,6 +132,24 @@ TEST(CommandLine, UnwritableTraceIsNotedBeforeTheWork) {
   EXPECT_TRUE(folder.names().empty());
 }
 
+// Surfels left out are not among those whose normals and radii are estimated.
+TEST(CommandLine, WhatPointsLackIsEstimatedAndCounted) {
+  const ScratchFolder folder;
+  folder.file(
+      "points.ply",
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 nan 0\n");
+  folder.file("s.toml", "[surfels]\nfile = \"points.ply\"\n[frame]\nwidth = 16\nheight = 16\n");
+  const Outcome drawn =
+      run_program({"run", "s.toml", "--fidelity", "functional", "--out", "out"}, folder.path());
+  EXPECT_NE(drawn.out.find("4 surfels, 1 left out (1 not finite), 4 normals estimated, 4 radii estimated\n"),
+            std::string::npos)
+      << drawn.out << drawn.error;
+  const auto surfels = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"];
+  EXPECT_EQ(surfels["normals_estimated"], 4);
+  EXPECT_EQ(surfels["radii_estimated"], 4);
+}
+
 TEST(CommandLine, RecordedTraceTellsWhatItHolds) {
   const ScratchFolder folder;
   folder.file(

@@ -237,6 +237,7 @@ TEST_F(PointFileTest, SurfelsThatCannotBeDrawnAreCounted) {
                                       3));
   EXPECT_EQ(scene.surfels.size(), 1u);
   EXPECT_EQ(scene.skipped.not_finite, 2u);
+  EXPECT_EQ(scene.estimated.normals + scene.estimated.radii, 0u);
   EXPECT_EQ(scene.surfels[0].normal, glm::vec3(0, 0, 1));
   EXPECT_EQ(scene.surfels[0].color, glm::vec3(1, 0.5, 0));
   EXPECT_EQ(scene.splatting.depth_offset, 0.5) << "a surfel alone has its radius for a spacing";
@@ -268,6 +269,10 @@ TEST_F(PointFileTest, RadiusAndNormalAreEstimated) {
   EXPECT_FLOAT_EQ(middle.radius, 2 * std::sqrt(2.0f)) << "the diagonal neighbour is the furthest of 8";
   for (const Surfel& s : scene.surfels) EXPECT_NEAR(s.normal.z, -1, 1e-6) << "toward the eye";
   EXPECT_DOUBLE_EQ(scene.splatting.depth_offset, 2) << "the spacing";
+  EXPECT_EQ(scene.estimated.normals, 81u);
+  EXPECT_EQ(scene.estimated.radii, 81u);
+  EXPECT_EQ(describe(scene.skipped, scene.estimated),
+            "none left out, 81 normals estimated, 81 radii estimated");
 }
 
 TEST_F(PointFileTest, PointsOnOnePlaceOrLineAreLeftOut) {

@@ -43,6 +43,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   Surfels surfels = make_surfels(settings, file.parent_path(), progress);
   scene.surfels = std::move(surfels.surfels);
   scene.skipped = surfels.skipped;
+  scene.estimated = surfels.estimated;
   scene.mesh = surfels.mesh;
   scene.camera = settings.camera = surfels.camera;
   check_camera(settings, file.string());
@@ -68,6 +69,12 @@ std::string describe(const SkipCounts& skipped) {
                              {skipped.zero_radius, "of radius 0"},
                              {skipped.duplicate, "at the place of another"},
                              {skipped.zero_normal, "without a normal"}}));
+}
+
+std::string describe(const SkipCounts& skipped, const EstimateCounts& estimated) {
+  const std::string made =
+      listed({{estimated.normals, "normals estimated"}, {estimated.radii, "radii estimated"}});
+  return made.empty() ? describe(skipped) : describe(skipped) + ", " + made;
 }
 
 std::string describe(const MeshCounts& mesh) {

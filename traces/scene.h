@@ -100,10 +100,17 @@ struct SkipCounts {
   std::size_t total() const { return not_finite + zero_radius + duplicate + zero_normal; }
 };
 
+// What a file of points does not have is estimated from the neighbours; of the surfels that were kept.
+struct EstimateCounts {
+  std::size_t normals = 0;
+  std::size_t radii = 0;
+};
+
 struct Scene {
   std::string name;  // the scene file's name without folder and ending
   std::vector<Surfel> surfels;
   SkipCounts skipped;
+  EstimateCounts estimated;
   MeshCounts mesh;  // all 0 where the surfels come from no mesh
   Camera camera;
   Frame frame;
@@ -123,6 +130,9 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
 
 // "2 left out (1 not finite, 1 of radius 0)", or "none left out".
 std::string describe(const SkipCounts& skipped);
+
+// The two, with ", 7 normals estimated, 7 radii estimated" where there are such.
+std::string describe(const SkipCounts& skipped, const EstimateCounts& estimated);
 
 // "from 1000 triangles, 3 left out (3 degenerate), 12 normals computed"; empty where there is no mesh.
 std::string describe(const MeshCounts& mesh);

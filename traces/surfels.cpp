@@ -72,6 +72,8 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
   result.average_spacing = average_spacing(surfels);
   // A single surfel has no neighbour; any offset will do for it.
   if (!(result.average_spacing > 0)) result.average_spacing = surfels.empty() ? 1 : surfels.front().radius;
+  if (!points.has_normals) result.estimated.normals = surfels.size();
+  if (!points.has_radii) result.estimated.radii = surfels.size();
   result.surfels = std::move(surfels);
   return result;
 }
@@ -119,7 +121,7 @@ std::string describe(const SampledModel& sampled) {
 Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path& folder,
                      const std::function<void(double)>& progress) {
   const SurfelSource& source = settings.surfels;
-  if (is_plane(source)) return {make_plane(source), {}, {}, settings.camera, kPlaneSpacing};
+  if (is_plane(source)) return {make_plane(source), {}, {}, {}, settings.camera, kPlaneSpacing};
   if (!source.file.empty() && !is_mesh_file(folder / source.file))
     return complete(read_ply(folder / source.file), settings);
   SampledModel sampled = sample_source(source, folder, progress);

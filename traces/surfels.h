@@ -9,6 +9,7 @@ namespace splatscope::traces {
 struct Surfels {
   std::vector<Surfel> surfels;  // finite, radius > 0, normal of unit length, color in [0, 1]
   SkipCounts skipped;
+  EstimateCounts estimated;
   MeshCounts mesh;
   Camera camera;               // the settings', completed (framing.h)
   double average_spacing = 0;  // object units, > 0
