@@ -49,7 +49,7 @@ TEST(VolumeCommand, RefusesWhatIsNoVolume) {
   EXPECT_EQ(refused({"volume", "nan.toml"}), "a.nrrd:4: 2 sizes, expected three\n");
   folder.file("swan.toml", "\n[volume]\nprefilter = \"swan\"\n");
   EXPECT_EQ(refused({"record", "swan.toml", "-o", "swan.trace"}),
-            "swan.toml:2: volume.prefilter is not \"ewa\", expected it, the only filter of the machine's "
+            "swan.toml:3: volume.prefilter is not \"ewa\", expected it, the only filter of the machine's "
             "programs\n");
 }
 

@@ -26,8 +26,8 @@ std::string listed(std::initializer_list<std::pair<std::size_t, std::string_view
 Scene parse_scene(std::string_view text, const std::filesystem::path& file,
                   const std::function<void(double)>& progress) {
   SceneSettings settings = parse_settings(text, file.string());
-  if (settings.volume_line > 0) {
-    throw UserError(file.string(), settings.volume_line,
+  if (settings.gives("volume")) {
+    throw UserError(file.string(), settings.line_of({"volume"}),
                     "[volume] in the place of surfels, expected a scene of surfels");
   }
   Scene scene;

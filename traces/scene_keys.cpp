@@ -171,6 +171,12 @@ std::string quoted_list(const std::vector<std::string_view>& names) {
 
 }  // namespace
 
+int SceneSettings::line_of(std::initializer_list<std::string_view> names) const {
+  for (const std::string_view name : names)
+    if (const auto found = lines.find(name); found != lines.end()) return found->second;
+  return 0;
+}
+
 std::span<const SceneKey> scene_keys() {
   static const std::vector<SceneKey> kAll = [] {
     std::vector<SceneKey> keys(kKeys.begin(), kKeys.end());

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <initializer_list>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,14 +43,18 @@ struct SceneSettings {
   SurfelSource surfels;
   Camera camera;
   CameraKeys camera_given;
-  int camera_line = 0;  // of [camera]; 0: none
   int width = 0, height = 0;
   Splatting splatting;
   Capture capture;
   Hierarchy hierarchy;
   double depth_offset = 0;  // 0: the average spacing
   VolumeKeys volume;
-  int volume_line = 0;  // of [volume]; 0: none
+  std::map<std::string, int, std::less<>>
+      lines;  // of what the file gives: tables ("camera"), keys ("camera.up")
+
+  bool gives(std::string_view name) const { return lines.contains(name); }
+  // Of the first of these that the file gives; 0: of none.
+  int line_of(std::initializer_list<std::string_view> names) const;
 };
 
 // Each kind of value finds its place in the settings, and knows its default and range.

@@ -150,24 +150,61 @@ void read_table(SceneSettings& settings, std::string_view name, const toml::tabl
       throw UserError(
           file, line(node),
           fmt::format("{}.{} is {}, expected {}", name, key.str(), shown(node), expectation(*declared)));
+    settings.lines.emplace(fmt::format("{}.{}", name, key.str()), line(key));
   }
 }
 
-CameraKeys keys_given(const toml::table& camera) {
-  return {.eye = camera.contains("eye"),
-          .target = camera.contains("target"),
-          .up = camera.contains("up"),
-          .fov_y_degrees = camera.contains("fov_y_degrees"),
-          .near = camera.contains("near"),
-          .far = camera.contains("far")};
+CameraKeys keys_given(const SceneSettings& settings) {
+  return {.eye = settings.gives("camera.eye"),
+          .target = settings.gives("camera.target"),
+          .up = settings.gives("camera.up"),
+          .fov_y_degrees = settings.gives("camera.fov_y_degrees"),
+          .near = settings.gives("camera.near"),
+          .far = settings.gives("camera.far")};
 }
 
-void check_capture(const Capture& capture, const toml::table& root, std::string_view file) {
-  if (!glm::all(glm::lessThanEqual(capture.box_min, capture.box_max))) {
-    const toml::table* table = root["capture"].as_table();
-    throw UserError(file, table ? line(*table) : 0,
+void check_capture(const SceneSettings& settings, std::string_view file) {
+  if (!glm::all(glm::lessThanEqual(settings.capture.box_min, settings.capture.box_max)))
+    throw UserError(file, settings.line_of({"capture.box_min", "capture.box_max"}),
                     "capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
-  }
+}
+
+void check_refine(const SceneSettings& settings, std::string_view file) {
+  const Splatting& splatting = settings.splatting;
+  if (splatting.refine && splatting.algorithm != Algorithm::ewa_per_surfel)
+    throw UserError(file, settings.line_of({"splatting.refine"}),
+                    fmt::format("splatting.refine with algorithm \"{}\", expected \"ewa-per-surfel\"",
+                                name(splatting.algorithm)));
+}
+
+std::string text_of(const glm::dvec3& v) {
+  return fmt::format("[{:g}, {:g}, {:g}]", v.x, v.y, v.z);
+}
+
+// near >= far. Where a scene leaves a plane open it is put where what is to be seen begins or ends.
+[[noreturn]] void refuse_planes(const SceneSettings& settings, std::string_view file) {
+  const Camera& c = settings.camera;
+  const CameraKeys& given = settings.camera_given;
+  const int at = settings.line_of({"camera.near", "camera.far", "camera.eye", "camera.target"});
+  const bool framed = settings.gives("volume") || !is_plane(settings.surfels);
+  if (!framed || (given.near && given.far))
+    throw UserError(
+        file, at, fmt::format("camera.near is {:g} and camera.far {:g}, expected near < far", c.near, c.far));
+  if (given.near)
+    throw UserError(
+        file, at,
+        fmt::format("camera.near is {:g}, but what is to be seen ends {:g} from the eye, expected less",
+                    c.near, c.far));
+  if (given.far)
+    throw UserError(
+        file, at,
+        fmt::format("camera.far is {:g}, but what is to be seen begins {:g} from the eye, expected more",
+                    c.far, c.near));
+  throw UserError(
+      file, at,
+      fmt::format("seen from camera.eye {} toward camera.target {} all has the same depth in binary64, "
+                  "expected an eye nearer to what is to be seen",
+                  text_of(c.eye), text_of(c.target)));
 }
 
 // A volume has no use for the tables of surfels.
@@ -183,17 +220,18 @@ void check_volume_alone(const toml::table& root, std::string_view file) {
 }  // namespace
 
 void check_camera(const SceneSettings& settings, std::string_view file) {
-  const int at = settings.camera_line;
   const Camera& c = settings.camera;
-  if (!(c.near < c.far))
-    throw UserError(
-        file, at, fmt::format("camera.near is {:g} and camera.far {:g}, expected near < far", c.near, c.far));
+  if (!(c.near < c.far)) refuse_planes(settings, file);
+  const int at = settings.line_of({"camera.up", "camera.eye", "camera.target"});
   const glm::dvec3 view = c.target - c.eye;
   if (glm::length(view) == 0)
-    throw UserError(file, at, "camera.eye equals camera.target, expected two points");
+    throw UserError(file, settings.line_of({"camera.eye", "camera.target"}),
+                    "camera.eye equals camera.target, expected two points");
   if (glm::length(c.up) == 0) throw UserError(file, at, "camera.up is zero, expected a direction");
   if (glm::length(glm::cross(glm::normalize(view), glm::normalize(c.up))) < 1e-9)
-    throw UserError(file, at, "camera.up lies along the line of sight, expected another direction");
+    throw UserError(
+        file, at,
+        fmt::format("camera.up is {}, along the line of sight, expected another direction", text_of(c.up)));
 }
 
 SceneSettings parse_settings(std::string_view text, std::string_view file) {
@@ -206,25 +244,16 @@ SceneSettings parse_settings(std::string_view text, std::string_view file) {
     if (!node.is_table())
       throw UserError(file, line(name),
                       fmt::format("\"{}\" is a value, expected a table [{}]", name.str(), name.str()));
+    settings.lines.emplace(name.str(), line(name));
     read_table(settings, name.str(), *node.as_table(), file);
   }
-  check_capture(settings.capture, root, file);
-  if (const toml::table* camera = root["camera"].as_table()) {
-    settings.camera_given = keys_given(*camera);
-    settings.camera_line = line(*camera);
-  }
-  if (const toml::table* volume = root["volume"].as_table()) {
-    settings.volume_line = line(*volume);
+  settings.camera_given = keys_given(settings);
+  check_capture(settings, file);
+  check_refine(settings, file);
+  if (settings.gives("volume"))
     check_volume_alone(root, file);
-  } else if (is_plane(settings.surfels)) {
+  else if (is_plane(settings.surfels))
     check_camera(settings, file);
-  }
-  const Splatting& splatting = settings.splatting;
-  if (splatting.refine && splatting.algorithm != Algorithm::ewa_per_surfel) {
-    throw UserError(file, 0,
-                    fmt::format("splatting.refine with algorithm \"{}\", expected \"ewa-per-surfel\"",
-                                name(splatting.algorithm)));
-  }
   return settings;
 }
 

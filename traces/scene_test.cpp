@@ -154,7 +154,7 @@ TEST(Scene, ErrorsNameLineAndExpectation) {
   EXPECT_EQ(error_of("[splatting]\ncircular_cutoff = 1\n"),
             "s.toml:2: splatting.circular_cutoff is 1, expected true or false");
   EXPECT_EQ(error_of("[splatting]\nrefine = true\nalgorithm = \"no-ewa\"\n"),
-            "s.toml: splatting.refine with algorithm \"no-ewa\", expected \"ewa-per-surfel\"");
+            "s.toml:2: splatting.refine with algorithm \"no-ewa\", expected \"ewa-per-surfel\"");
   EXPECT_EQ(error_of("[camera]\neye = [1, 2]\n"),
             "s.toml:2: camera.eye is [ 1, 2 ], expected an array of three numbers from -1e+30 to 1e+30");
   EXPECT_EQ(error_of("[camera]\neye = [1, inf, 2]\n"),
@@ -162,17 +162,42 @@ TEST(Scene, ErrorsNameLineAndExpectation) {
 }
 
 TEST(Scene, CameraMustSeeSomething) {
-  EXPECT_NE(error_of("[camera]\nnear = 5\nfar = 5\n").find("s.toml:1: camera.near is 5"), std::string::npos);
-  EXPECT_NE(error_of("\n[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n").find("s.toml:2: camera.eye equals"),
-            std::string::npos);
-  EXPECT_NE(error_of("[camera]\nup = [0, 0, 0]\n").find("camera.up is zero"), std::string::npos);
-  EXPECT_NE(error_of("[camera]\neye = [0, 9, 0]\ntarget = [0, 1, 0]\n").find("along the line of sight"),
-            std::string::npos);
+  EXPECT_EQ(error_of("[camera]\nfar = 5\nnear = 5\n"),
+            "s.toml:3: camera.near is 5 and camera.far 5, expected near < far");
+  EXPECT_EQ(error_of("[camera]\n\nfar = 0.5\n"),
+            "s.toml:3: camera.near is 1 and camera.far 0.5, expected near < far");
+  EXPECT_EQ(error_of("\n[camera]\ntarget = [1, 1, 1]\neye = [1, 1, 1]\n"),
+            "s.toml:4: camera.eye equals camera.target, expected two points");
+  EXPECT_EQ(error_of("[camera]\nup = [0, 0, 0]\n"), "s.toml:2: camera.up is zero, expected a direction");
+  EXPECT_EQ(error_of("camera.target = [0, 1, 0]\ncamera.eye = [0, 9, 0]\n"),
+            "s.toml:2: camera.up is [0, 1, 0], along the line of sight, expected another direction");
+}
+
+// Planes that a scene leaves open are put where its surfels begin and end.
+TEST(Scene, APlaneIsNotBeyondWhatIsSeen) {
+  const auto error = [](std::string_view camera) {
+    try {
+      parse_scene(fmt::format("[surfels]\ngenerator = \"sphere\"\ncount = 50\n[camera]\n{}", camera),
+                  "s.toml");
+    } catch (const UserError& refused) {
+      return std::string(refused.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error("near = 1\nfar = 50\n"), "no error");
+  EXPECT_EQ(error("far = 5\nnear = 6\n"), "s.toml:6: camera.near is 6 and camera.far 5, expected near < far");
+  EXPECT_EQ(error("\nnear = 60\n").find("s.toml:6: camera.near is 60, but what is to be seen ends "), 0u)
+      << error("near = 60\n");
+  EXPECT_EQ(error("far = 0.01\n").find("s.toml:5: camera.far is 0.01, but what is to be seen begins "), 0u);
+  EXPECT_EQ(
+      error("eye = [1e30, 0, 0]\ntarget = [-1e30, 0, 0]\n"),
+      "s.toml:5: seen from camera.eye [1e+30, 0, 0] toward camera.target [-1e+30, 0, 0] all has the same "
+      "depth in binary64, expected an eye nearer to what is to be seen");
 }
 
 TEST(Scene, CaptureBoxIsTheRightWayRound) {
   EXPECT_EQ(error_of("\n[capture]\nbox_min = [0, 1, 0]\nbox_max = [1, 0, 1]\n"),
-            "s.toml:2: capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
+            "s.toml:3: capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
   EXPECT_EQ(error_of("[capture]\nbox_min = [0, 0, 0]\nbox_max = [0, 0, 0]\n"), "no error");
 }
 

@@ -355,7 +355,7 @@ VolumeTrace volume_trace(const kernels::View& view, const kernels::VolumeSplats&
 VolumeTrace record(const VolumeScene& scene) {
   if (scene.settings.prefilter != kernels::VolumePrefilter::ewa) {
     throw UserError(
-        scene.file, scene.line,
+        scene.file, scene.prefilter_line,
         "volume.prefilter is not \"ewa\", expected it, the only filter of the machine's programs");
   }
   return volume_trace(

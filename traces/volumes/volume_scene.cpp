@@ -42,7 +42,7 @@ glm::ivec3 voxels_of(const SceneSettings& settings, std::string_view file) {
   }
   if (!good) {
     throw UserError(
-        file, settings.volume_line,
+        file, settings.line_of({"volume.voxels"}),
         fmt::format("volume.voxels is [{:g}, {:g}, {:g}], expected whole numbers, at most {:g} voxels{}",
                     keys.voxels.x, keys.voxels.y, keys.voxels.z, kMostVoxels,
                     cube ? ", as many along each axis and at least 2" : ""));
@@ -86,9 +86,10 @@ std::vector<double> places_along(const SceneSettings& settings, const kernels::V
   std::vector<double> places = axis == 0 ? keys.x : axis == 1 ? keys.y : keys.z;
   const auto count = static_cast<std::size_t>(volume.size[axis]);
   if (!places.empty() && places.size() != count) {
-    throw UserError(file, settings.volume_line,
-                    fmt::format("volume.{} has {} places, expected {}, one for each voxel", "xyz"[axis],
-                                places.size(), count));
+    const std::string key = fmt::format("volume.{}", "xyz"[axis]);
+    throw UserError(
+        file, settings.line_of({key}),
+        fmt::format("{} has {} places, expected {}, one for each voxel", key, places.size(), count));
   }
   if (places.empty()) {
     for (std::size_t i = 0; i < count; ++i)
@@ -104,7 +105,8 @@ kernels::VoxelPlaces places_of(const SceneSettings& settings, const kernels::Vol
   const bool rectilinear = !keys.x.empty() || !keys.y.empty() || !keys.z.empty();
   if (!rectilinear && keys.positions.empty()) return {};
   const auto fail = [&](const std::string& what) {
-    throw UserError(file.string(), settings.volume_line, what);
+    throw UserError(file.string(), settings.line_of({"volume.positions", "volume.x", "volume.y", "volume.z"}),
+                    what);
   };
   if (rectilinear && !keys.positions.empty())
     fail("volume.positions beside volume.x, y or z, expected the one or the other");
@@ -137,7 +139,7 @@ void read_irregular(const SceneSettings& settings, const std::filesystem::path& 
   if (!keys.file.empty() || !keys.positions.empty() || !keys.x.empty() || !keys.y.empty() ||
       !keys.z.empty() || keys.voxels != glm::dvec3(0)) {
     throw UserError(
-        file.string(), settings.volume_line,
+        file.string(), settings.line_of({"volume.samples"}),
         "volume.samples beside a grid's keys (file, voxels, x, y, z, positions), expected the one or "
         "the other");
   }
@@ -195,18 +197,19 @@ kernels::View view_of(SceneSettings& settings, const Box& box, std::string_view 
 
 VolumeScene parse_volume_scene(std::string_view text, const std::filesystem::path& file) {
   SceneSettings settings = parse_settings(text, file.string());
-  if (settings.volume_line == 0) {
+  if (!settings.gives("volume")) {
     throw UserError(file.string(), 0, "has no [volume], expected a scene with a volume");
   }
   VolumeKeys& keys = settings.volume;
   if (!(glm::length(keys.rendering.light.toward_light) > 1e-9)) {
-    throw UserError(file.string(), settings.volume_line, "volume.light is zero, expected a direction");
+    throw UserError(file.string(), settings.line_of({"volume.light"}),
+                    "volume.light is zero, expected a direction");
   }
   keys.rendering.light.toward_light = glm::normalize(keys.rendering.light.toward_light);
   VolumeScene scene;
   scene.name = file.stem().string();
   scene.file = file.string();
-  scene.line = settings.volume_line;
+  scene.prefilter_line = settings.line_of({"volume.prefilter"});
   if (keys.samples.empty()) {
     scene.volume = volume_of(settings, file);
     scene.places = places_of(settings, scene.volume, file);
@@ -248,7 +251,7 @@ kernels::VolumeSplats VolumeScene::splats() const {
 }
 
 bool has_volume(const SceneText& scene) {
-  return parse_settings(scene.text, scene.file.string()).volume_line > 0;
+  return parse_settings(scene.text, scene.file.string()).gives("volume");
 }
 
 VolumeScene load_volume_scene(const std::filesystem::path& name_or_path) {

@@ -19,7 +19,7 @@ namespace splatscope::traces {
 struct VolumeScene {
   std::string name;                            // the scene file's name without folder and ending
   std::string file;                            // for messages
-  int line = 0;                                // of [volume]
+  int prefilter_line = 0;                      // of volume.prefilter
   kernels::Volume volume;                      // of irregular data: their values in a row
   kernels::VoxelPlaces places;                 // of a rectilinear or curvilinear grid; else empty
   std::vector<kernels::VolumeSample> samples;  // of irregular data; else none

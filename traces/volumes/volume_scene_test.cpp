@@ -77,10 +77,10 @@ TEST(VolumeScene, SaysWhatIsWrong) {
             "a.toml:2: [surfels] beside [volume], expected [camera], [frame] and [volume] alone");
   EXPECT_EQ(
       error_of("[volume]\nvoxels = [4, 4, 5]\n"),
-      "a.toml:1: volume.voxels is [4, 4, 5], expected whole numbers, at most 6.71089e+07 voxels, as many "
+      "a.toml:2: volume.voxels is [4, 4, 5], expected whole numbers, at most 6.71089e+07 voxels, as many "
       "along each axis and at least 2");
   EXPECT_EQ(error_of("[volume]\nlight = [0, 0, 0]\n"),
-            "a.toml:1: volume.light is zero, expected a direction");
+            "a.toml:2: volume.light is zero, expected a direction");
   EXPECT_EQ(error_of("[volume]\nfile = \"none.nrrd\"\n"), "none.nrrd: cannot be read, expected a NRRD file");
   for (const char* points :
        {"[{ value = 1, opacity = 2, color = [0, 0, 0] }]", "[{ value = 1 }]", "3", "[3]",
@@ -180,18 +180,18 @@ TEST_F(VolumeKinds, CamerasFrameTheirPlaces) {
 
 TEST_F(VolumeKinds, SaysWhatIsWrong) {
   const std::string file = "file = \"values.nrrd\"\n";
-  EXPECT_EQ(error(file + "x = [0, 1]\n"), "s.toml:1: volume.x has 2 places, expected 5, one for each voxel");
+  EXPECT_EQ(error(file + "x = [0, 1]\n"), "s.toml:3: volume.x has 2 places, expected 5, one for each voxel");
   EXPECT_EQ(error(file + "y = [0, 2, 1, 3]\n"),
             "s.toml:3: volume.y is [ 0, 2, 1, 3 ], expected an array of rising numbers from -1e+09 to 1e+09");
   EXPECT_EQ(error(file + "x = [0, 1, 2, 3, 4]\npositions = \"places.nrrd\"\n"),
-            "s.toml:1: volume.positions beside volume.x, y or z, expected the one or the other");
+            "s.toml:4: volume.positions beside volume.x, y or z, expected the one or the other");
   EXPECT_EQ(error("generator = \"constant\"\nvoxels = [5, 4, 2]\npositions = \"places.nrrd\"\n"),
             "places.nrrd: 5 x 4 x 3 places, expected 5 x 4 x 2, one for each voxel");
   EXPECT_EQ(error("generator = \"constant\"\nvoxels = [5, 1, 2]\nz = [0, 1]\n"),
-            "s.toml:1: a grid with a single voxel along an axis, expected two where their places are given");
+            "s.toml:4: a grid with a single voxel along an axis, expected two where their places are given");
   EXPECT_EQ(
       error(file + "samples = \"samples.ply\"\n"),
-      "s.toml:1: volume.samples beside a grid's keys (file, voxels, x, y, z, positions), expected the one or "
+      "s.toml:3: volume.samples beside a grid's keys (file, voxels, x, y, z, positions), expected the one or "
       "the other");
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
