@@ -22,7 +22,9 @@ std::span<const SceneKey> volume_keys() {
        ChoiceValue{[](S& s, int i) { s.volume.generator = VolumeGenerator(i); },
                    {"marschner-lobb", "shells", "zebra", "head", "constant"},
                    0}},
-      {"volume", "voxels", "voxels", "of the generator along x, y and z; 0: its own number",
+      {"volume", "voxels", "voxels",
+       "of the generator along x, y and z, from 1 on and at most 67108864 in all; three zeros: its own "
+       "number",
        VectorValue{[](S& s) -> glm::dvec3& { return s.volume.voxels; }, {0, 0, 0}, 0, 2048}},
       {"volume", "x", "object units",
        "rectilinear grid: where its voxels stand along x, as many as there are; none: evenly spaced",

@@ -24,7 +24,7 @@ namespace {
 
 constexpr glm::ivec3 kOwnVoxels[] = {
     {64, 64, 64}, {64, 64, 64}, {512, 512, 3}, {128, 128, 54}, {64, 64, 64}};  // by generator
-constexpr double kMostVoxels = 1 << 26;
+constexpr int kMostVoxels = 1 << 26;
 constexpr int kShells = 4;
 constexpr double kZebraPeriod = 0.11;
 
@@ -43,9 +43,10 @@ glm::ivec3 voxels_of(const SceneSettings& settings, std::string_view file) {
   if (!good) {
     throw UserError(
         file, settings.line_of({"volume.voxels"}),
-        fmt::format("volume.voxels is [{:g}, {:g}, {:g}], expected whole numbers, at most {:g} voxels{}",
-                    keys.voxels.x, keys.voxels.y, keys.voxels.z, kMostVoxels,
-                    cube ? ", as many along each axis and at least 2" : ""));
+        fmt::format(
+            "volume.voxels is [{:g}, {:g}, {:g}], expected {}, at most {} voxels in all, or three zeros",
+            keys.voxels.x, keys.voxels.y, keys.voxels.z,
+            cube ? "three times the same whole number from 2 on" : "whole numbers from 1 on", kMostVoxels));
   }
   return voxels;
 }

@@ -77,8 +77,14 @@ TEST(VolumeScene, SaysWhatIsWrong) {
             "a.toml:2: [surfels] beside [volume], expected [camera], [frame] and [volume] alone");
   EXPECT_EQ(
       error_of("[volume]\nvoxels = [4, 4, 5]\n"),
-      "a.toml:2: volume.voxels is [4, 4, 5], expected whole numbers, at most 6.71089e+07 voxels, as many "
-      "along each axis and at least 2");
+      "a.toml:2: volume.voxels is [4, 4, 5], expected three times the same whole number from 2 on, at most "
+      "67108864 voxels in all, or three zeros");
+  for (const char* wrong : {"[0, 0, 20]", "[1.5, 2, 3]", "[1024, 1024, 65]"})
+    EXPECT_EQ(error_of(fmt::format("[volume]\ngenerator = \"head\"\nvoxels = {}\n", wrong)),
+              fmt::format(
+                  "a.toml:3: volume.voxels is {}, expected whole numbers from 1 on, at most 67108864 voxels "
+                  "in all, or three zeros",
+                  wrong));
   EXPECT_EQ(error_of("[volume]\nlight = [0, 0, 0]\n"),
             "a.toml:2: volume.light is zero, expected a direction");
   EXPECT_EQ(error_of("[volume]\nfile = \"none.nrrd\"\n"), "none.nrrd: cannot be read, expected a NRRD file");
