@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <utility>
 
 #include "model/error.h"
 #include "model/input_file.h"
@@ -169,6 +170,28 @@ void check_capture(const SceneSettings& settings, std::string_view file) {
                     "capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
 }
 
+// What would have nothing to act on. A key at its default asks for nothing.
+void check_hierarchy(const SceneSettings& settings, std::string_view file) {
+  const Hierarchy &asked = settings.hierarchy, usual = default_settings().hierarchy;
+  const bool none =
+      asked.culling == Culling::none || (asked.culling == Culling::automatic && is_plane(settings.surfels));
+  const bool dense = asked.surfels_per_pixel != usual.surfels_per_pixel;
+  const std::pair<std::string_view, bool> keys[] = {
+      {"hierarchy.block_surfels", asked.block_surfels != usual.block_surfels},
+      {"hierarchy.level", asked.levels},
+      {"hierarchy.surfels_per_pixel", dense},
+      {"hierarchy.progressive", asked.progressive}};
+  for (const auto& [key, changed] : keys)
+    if (none && changed)
+      throw UserError(
+          file, settings.line_of({key}),
+          fmt::format("{} without a hierarchy, expected hierarchy.culling = \"off\" or \"blocks\"{}", key,
+                      asked.culling == Culling::none ? "" : ", as the plane has none by default"));
+  if (dense && !asked.levels)
+    throw UserError(file, settings.line_of({"hierarchy.surfels_per_pixel"}),
+                    "hierarchy.surfels_per_pixel with level \"finest\", expected level = \"auto\"");
+}
+
 void check_refine(const SceneSettings& settings, std::string_view file) {
   const Splatting& splatting = settings.splatting;
   if (splatting.refine && splatting.algorithm != Algorithm::ewa_per_surfel)
@@ -250,6 +273,7 @@ SceneSettings parse_settings(std::string_view text, std::string_view file) {
   settings.camera_given = keys_given(settings);
   check_capture(settings, file);
   check_refine(settings, file);
+  check_hierarchy(settings, file);
   if (settings.gives("volume"))
     check_volume_alone(root, file);
   else if (is_plane(settings.surfels))

@@ -173,6 +173,30 @@ TEST(Scene, CameraMustSeeSomething) {
             "s.toml:2: camera.up is [0, 1, 0], along the line of sight, expected another direction");
 }
 
+TEST(Scene, KeysOfTheHierarchyHaveSomethingToActOn) {
+  const std::string plane = "[hierarchy]\n", sphere = "surfels.generator = \"sphere\"\n[hierarchy]\n";
+  for (const std::string key :
+       {"block_surfels = 64", "level = \"auto\"", "surfels_per_pixel = 2", "progressive = true"}) {
+    const std::string name = key.substr(0, key.find(' '));
+    EXPECT_EQ(
+        error_of(plane + key + "\n"),
+        fmt::format("s.toml:2: hierarchy.{} without a hierarchy, expected hierarchy.culling = \"off\" or "
+                    "\"blocks\", as the plane has none by default",
+                    name));
+    EXPECT_EQ(
+        error_of(sphere + key + "\nculling = \"none\"\n"),
+        fmt::format("s.toml:3: hierarchy.{} without a hierarchy, expected hierarchy.culling = \"off\" or "
+                    "\"blocks\"",
+                    name));
+    for (const std::string& with : {plane + "culling = \"off\"\n", plane + "culling = \"blocks\"\n", sphere})
+      EXPECT_EQ(error_of(with + key + (name == "surfels_per_pixel" ? "\nlevel = \"auto\"\n" : "\n")),
+                "no error");
+  }
+  EXPECT_EQ(error_of(sphere + "surfels_per_pixel = 2\n"),
+            "s.toml:3: hierarchy.surfels_per_pixel with level \"finest\", expected level = \"auto\"");
+  EXPECT_EQ(error_of(plane + "level = \"finest\"\nprogressive = false\n"), "no error");
+}
+
 // Planes that a scene leaves open are put where its surfels begin and end.
 TEST(Scene, APlaneIsNotBeyondWhatIsSeen) {
   const auto error = [](std::string_view camera) {
