@@ -287,7 +287,24 @@ TEST_F(PointFileTest, PointsOnOnePlaceOrLineAreLeftOut) {
   EXPECT_EQ(one_place.zero_radius, 1u);
   EXPECT_EQ(scene_of(file(1, "1 1 1")).skipped.zero_radius, 1u);
   EXPECT_EQ(scene_of(file(3, "1 1 1\n2 2 2\n3 3 3")).skipped.zero_normal, 3u);
-  EXPECT_TRUE(scene_of(file(0, "")).surfels.empty());
+  EXPECT_TRUE(scene_of(file(1, "nan 1 1")).surfels.empty()) << "load_scene refuses it";
+}
+
+TEST_F(PointFileTest, ASceneNeedsSurfels) {
+  const auto error = [&](std::string_view file) {
+    write_file(ply_, file);
+    write_file(folder_ / "s.toml", "[surfels]\nfile = \"p.ply\"\n");
+    try {
+      load_scene(folder_ / "s.toml");
+    } catch (const UserError& error) {
+      return std::string(error.what()).substr(folder_.string().size());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error(with_normals_and_radii("", 0)), "/p.ply: no vertices, expected the surfels of a scene");
+  EXPECT_EQ(error(with_normals_and_radii("0 0 0  0 0 1  0  1 1 1\n", 1)),
+            "/s.toml: none of its surfels can be drawn: 1 left out (1 of radius 0), expected at least one "
+            "that can");
 }
 
 TEST_F(PointFileTest, MissingFileIsTheUsersError) {

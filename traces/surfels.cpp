@@ -122,8 +122,12 @@ Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path&
                      const std::function<void(double)>& progress) {
   const SurfelSource& source = settings.surfels;
   if (is_plane(source)) return {make_plane(source), {}, {}, {}, settings.camera, kPlaneSpacing};
-  if (!source.file.empty() && !is_mesh_file(folder / source.file))
-    return complete(read_ply(folder / source.file), settings);
+  if (!source.file.empty() && !is_mesh_file(folder / source.file)) {
+    PointFile points = read_ply(folder / source.file);
+    if (points.surfels.empty())
+      throw UserError((folder / source.file).string(), 0, "no vertices, expected the surfels of a scene");
+    return complete(std::move(points), settings);
+  }
   SampledModel sampled = sample_source(source, folder, progress);
   Surfels result = complete({std::move(sampled.surfels), true, true, {}}, settings);
   result.mesh = sampled.mesh;
