@@ -23,6 +23,7 @@ const std::vector<std::vector<std::string>> kLong = {
     {"sweep", "checkerboard-ewa-per-surfel", "--sweep", "vertex.units=1,2,3,4,5,6,7,8", "--cache", "cache"},
     {"record", "large.toml", "-o", "large.trace"},
     {"sample", "square.obj", "-n", "8000000", "-o", "s.ply"},
+    {"run", "volume-head", "--fidelity", "throughput"},
     {"study", "vertex-data"},
     {"reproduce", "table1"}};
 

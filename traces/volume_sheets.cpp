@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "model/stop.h"
+
 namespace splatscope::traces {
 namespace {
 
@@ -34,6 +36,7 @@ class SheetSums {
   void add(const HostVoxel& voxel, const Rectangle& within) {
     const glm::vec2 center = 0.5f * (voxel.low + voxel.high);
     for (int y = within.top; y < within.bottom; ++y) {
+      stop_if_asked();
       const float dy = static_cast<float>(y) + 0.5f - center.y;
       float* row = &sums_[static_cast<std::size_t>(y - rectangle_.top) *
                           static_cast<std::size_t>(rectangle_.right - rectangle_.left)];
@@ -90,6 +93,7 @@ SheetPlan SheetPlanner::plan(std::span<const HostVoxel> voxels,
   Rectangle& whole = plan.rectangle;
   whole = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
   for (const std::uint32_t k : numbers) {
+    stop_if_asked();
     const HostVoxel& voxel = voxels[k];
     if (!voxel.drawn) continue;
     const Rectangle r = rectangle_of(voxel, view);

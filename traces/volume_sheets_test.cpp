@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <numeric>
+
+#include "model/stop.h"
 
 namespace splatscope::traces {
 namespace {
@@ -52,6 +55,12 @@ TEST(VolumeSheets, FaintVoxelsHaveMoreGain) {
     EXPECT_DOUBLE_EQ(plan.gain[level], plan.gain[level - 1] * 255 / plan.rescale[level - 1]);
   EXPECT_GT(plan.gain[2] * 0.03, 0.7);
   EXPECT_LE(plan.gain[2] * 0.03, 0.9601);
+}
+
+TEST(VolumeSheets, StopWhereTheyAreAskedTo) {
+  stop_signal = SIGINT;
+  EXPECT_THROW(planned({voxel(20.5f, 20.5f, 0.8f)}), Interrupted);
+  stop_signal = 0;
 }
 
 TEST(VolumeSheets, WithoutGainsNothingIsScaled) {

@@ -18,6 +18,7 @@
 #include "kernels/splat_programs.h"
 #include "kernels/voxel_ewa/programs.h"
 #include "model/error.h"
+#include "model/stop.h"
 #include "traces/splat_trace.h"
 #include "traces/volume_sheets.h"
 
@@ -139,8 +140,10 @@ class Recorder {
   }
 
   void look_at_voxels() {
-    oneapi::tbb::parallel_for(std::size_t{0}, voxels_.size(),
-                              [&](std::size_t i) { voxels_[i] = look_at(splats_.splats[i]); });
+    oneapi::tbb::parallel_for(std::size_t{0}, voxels_.size(), [&](std::size_t i) {
+      stop_if_asked();
+      voxels_[i] = look_at(splats_.splats[i]);
+    });
     for (const HostVoxel& voxel : voxels_) {
       if (!voxel.drawn) continue;
       ++result_.splats;
@@ -285,8 +288,10 @@ class Recorder {
       const std::size_t count = std::min(kSurfelsADraw, numbers.size() - first);
       draw.base_vertex = static_cast<std::uint32_t>(bytes.size() / draw.vertex_stride);
       draw.index_count = static_cast<std::uint32_t>(count) * kIndices;
-      for (const std::uint32_t k : std::span(numbers).subspan(first, count))
+      for (const std::uint32_t k : std::span(numbers).subspan(first, count)) {
+        stop_if_asked();
         add_vertices(kind, planner_.weight_of(level), k, bytes);
+      }
       most_quads_ = std::max(most_quads_, count);
       result_.trace.commands.emplace_back(draw);
     }

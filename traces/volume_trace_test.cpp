@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 
 #include "kernels/reference/volume/procedural.h"
 #include "model/render.h"
+#include "model/stop.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::traces {
@@ -57,6 +59,13 @@ Frame drawn(const Trace& trace, const NumberFormats& formats) {
   options.formats = formats;
   options.record = Record::nothing;
   return render(trace, options).frame;
+}
+
+TEST(VolumeTrace, StopsWhereItIsAskedTo) {
+  const VolumeSplats splats = shells(8, false);
+  stop_signal = SIGINT;
+  EXPECT_THROW(volume_trace(view_of_shells(32), splats, {}), Interrupted);
+  stop_signal = 0;
 }
 
 TEST(VolumeTrace, picture_is_that_of_the_software_with_the_same_sheets) {

@@ -13,6 +13,7 @@
 
 #include "kernels/reference/volume/procedural.h"
 #include "model/error.h"
+#include "model/stop.h"
 #include "traces/framing.h"
 #include "traces/scene_settings.h"
 #include "traces/scene_text.h"
@@ -168,6 +169,7 @@ Box box_of(const VolumeScene& scene) {
   glm::ivec3 voxel;
   for (voxel.z = 0; voxel.z < volume.size.z; ++voxel.z) {
     for (voxel.y = 0; voxel.y < volume.size.y; ++voxel.y) {
+      stop_if_asked();
       for (voxel.x = 0; voxel.x < volume.size.x; ++voxel.x) box.add(scene.places(voxel), 0);
     }
   }

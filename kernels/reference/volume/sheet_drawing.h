@@ -59,11 +59,11 @@ std::size_t draw_sheets(const View& view, const SheetOrder& order, bool last_is_
         });
     drawn += rows.kept();
     rows.for_each_band([&](int index) {
-      stop_if_asked();
       Band& band = bands[static_cast<std::size_t>(index)];
       std::uint32_t sheet = 0;
       rows.for_each_run(index, [&](std::span<const std::uint32_t> run) {
         while (!run.empty()) {
+          stop_if_asked();
           if (splats[run.front()].sheet != sheet) band.composite();
           sheet = splats[run.front()].sheet;
           const auto end = std::ranges::find_if(run, [&](auto k) { return splats[k].sheet != sheet; });

@@ -61,6 +61,7 @@ VolumeSplats grid_splats(const Volume& volume, const TransferFunction& transfer,
   for (const auto& layer : layers) count += layer.size();
   result.splats.reserve(count);
   for (auto& layer : layers) {
+    stop_if_asked();
     result.splats.insert(result.splats.end(), layer.begin(), layer.end());
     layer = {};
   }
@@ -74,6 +75,7 @@ VolumeSplats sample_splats(std::span<const VolumeSample> samples, const Transfer
   result.sheet_spacing = glm::dvec3(sheet_spacing);
   result.low = glm::dvec3(std::numeric_limits<double>::infinity());
   for (const VolumeSample& sample : samples) {
+    stop_if_asked();
     const double value = static_cast<double>(sample.value);
     const VoxelLook look = transfer(value);
     if (!(look.opacity > 0)) {
@@ -92,6 +94,7 @@ VolumeSplats sample_splats(std::span<const VolumeSample> samples, const Transfer
 SheetOrder sheet_order(const VolumeSplats& splats, int axis) {
   std::vector<std::uint32_t> sheets(splats.splats.size());
   oneapi::tbb::parallel_for(std::size_t{0}, sheets.size(), [&](std::size_t k) {
+    stop_if_asked();
     sheets[k] = static_cast<std::uint32_t>(splats.sheet(splats.splats[k], axis));
   });
   SheetOrder order;
@@ -102,6 +105,7 @@ SheetOrder sheet_order(const VolumeSplats& splats, int axis) {
   order.splats.resize(sheets.size());
   std::vector<std::uint32_t> next(order.first.begin(), order.first.end() - 1);
   for (std::size_t k = 0; k < sheets.size(); ++k) {
+    stop_if_asked();
     order.splats[next[sheets[k]]++] = static_cast<std::uint32_t>(k);
   }
   return order;
