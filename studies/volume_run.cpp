@@ -28,13 +28,14 @@ std::string run_volume(const traces::VolumeScene& scene, Precision precision,
   const auto start = HostClock::now();
   kernels::FastVolume volume(scene.splats());
   const double classify_seconds = seconds_since(start);
-  const std::size_t splats = volume.splats().splats.size(), empty = volume.splats().empty;
+  const std::size_t empty = volume.splats().empty;
   const auto frame_start = HostClock::now();
   const std::clock_t processor_start = std::clock();
   const kernels::FastVolumePicture picture =
       precision == Precision::single_precision
           ? volume.draw(scene.view, scene.settings, progress)
           : in_single(volume_picture(scene.view, volume.splats(), scene.settings, progress));
+  const std::size_t splats = volume.splats().splats.size() - picture.left_out;
   const double frame_seconds = seconds_since(frame_start);
   const double processor_seconds =
       static_cast<double>(std::clock() - processor_start) / static_cast<double>(CLOCKS_PER_SEC);

@@ -32,6 +32,31 @@ TEST(VolumeCommand, DrawsAVolumeInEitherPrecision) {
   EXPECT_GT(studies::psnr(pictures[0], pictures[1]), 50);  // the step of the table: kernels/reference/volume
 }
 
+// From within, most of it is behind the eye or beside the frame.
+TEST(VolumeCommand, CountsWhatIsDrawnAsRunDoes) {
+  const ScratchFolder folder;
+  folder.file("shells.toml",
+              "[volume]\ngenerator = \"shells\"\nvoxels = [32, 32, 32]\n"
+              "[camera]\neye = [0, 0, 0]\ntarget = [0, 0, -1]\n[frame]\nwidth = 64\nheight = 64\n");
+  ASSERT_EQ(
+      run_program({"run", "shells.toml", "--fidelity", "functional", "--out", "run"}, folder.path()).status,
+      0);
+  const auto machine = nlohmann::json::parse(text_of(folder.path() / "run/results.json"))["volume"];
+  for (const std::string precision : {"single", "double"}) {
+    const Outcome drawn =
+        run_program({"volume", "shells.toml", "--precision", precision, "--out", precision}, folder.path());
+    const auto results = nlohmann::json::parse(text_of(folder.path() / precision / "results.json"));
+    EXPECT_EQ(results["sheets"], machine["sheets"]) << precision;
+    const int splats = results["splats"], left_out = results["left_out"];
+    EXPECT_NEAR(splats, int{machine["splats"]}, splats / 50) << "run counts splats between pixels too";
+    EXPECT_EQ(splats + left_out, int{machine["splats"]} + int{machine["left_out"]});
+    EXPECT_NE(drawn.out.find(fmt::format("{} splats in {} sheets, {} left out\n", splats,
+                                         int{results["sheets"]}, left_out)),
+              std::string::npos)
+        << drawn.out;
+  }
+}
+
 TEST(VolumeCommand, RefusesWhatIsNoVolume) {
   const ScratchFolder folder;
   folder.file("plane.toml", "[surfels]\n");

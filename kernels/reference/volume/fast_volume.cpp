@@ -113,15 +113,17 @@ FastVolumePicture FastVolume::draw(const View& view, const VolumeSettings& setti
   const SheetAxis axis = sheet_axis(view, settings.axis);
   SheetOrder& order = orders_[static_cast<std::size_t>(axis.axis)];
   if (order.first.empty()) order = sheet_order(splats_, axis.axis);
-  FastVolumePicture picture{view.width, view.height, {}, splats_.splats.size(), order.first.size() - 1};
+  FastVolumePicture picture{view.width, view.height, {}, splats_.splats.size(), 0};
   picture.pixels.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   std::vector<Band> bands = empty_bands(view, table);
-  picture.left_out -= draw_sheets<SheetSplat>(
+  const SheetsDrawn drawn = draw_sheets<SheetSplat>(
       view, order, axis.last_is_nearest, bands, progress,
       [&](std::span<const std::uint32_t> numbers, std::span<const std::uint32_t> sheets, SheetSplat* out,
           RowRange* rows) {
         return project_splats(fast, specular, splats_.splats, kernels_, numbers, sheets, out, rows);
       });
+  picture.left_out -= drawn.splats;
+  picture.sheets = drawn.sheets;
   for (const Band& band : bands) copy(band, picture);
   return picture;
 }

@@ -18,7 +18,7 @@ struct FastVolumePicture {
   std::vector<glm::vec4> pixels;  // r g b times opacity, and opacity; rows from the top
   std::size_t left_out = 0;       // splats before the near plane, outside of the picture, or without a
                                   // finite footprint
-  std::size_t sheets = 0;
+  std::size_t sheets = 0;         // that have a splat in the picture
 };
 
 // The picture of volume_picture in single precision: SIMD over splats while they are projected and over

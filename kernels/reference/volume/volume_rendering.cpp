@@ -57,7 +57,7 @@ class Projector {
     result.right = pixel_from(center.x + reach.x, view_.width);
     result.top = pixel_from(center.y - reach.y, view_.height);
     result.bottom = pixel_from(center.y + reach.y, view_.height);
-    return true;
+    return result.left < result.right && result.top < result.bottom;
   }
 
  private:
@@ -140,9 +140,8 @@ VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const
   }
   const SheetAxis axis = sheet_axis(view, settings.axis);
   const SheetOrder order = sheet_order(splats, axis.axis);
-  picture.sheets = order.first.size() - 1;
   const Projector projector(view, splats, settings);
-  picture.left_out -=
+  const SheetsDrawn drawn =
       draw_sheets<Projected>(view, order, axis.last_is_nearest, bands, progress,
                              [&](std::span<const std::uint32_t> numbers,
                                  std::span<const std::uint32_t> sheets, Projected* out, RowRange* rows) {
@@ -155,6 +154,8 @@ VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const
                                }
                                return kept;
                              });
+  picture.left_out -= drawn.splats;
+  picture.sheets = drawn.sheets;
   return picture;
 }
 

@@ -38,8 +38,9 @@ struct VolumePicture {
   int width = 0;
   int height = 0;
   std::vector<glm::dvec4> pixels;  // r g b times opacity, and opacity; rows from the top
-  std::size_t left_out = 0;        // splats before the near plane, or without a finite footprint
-  std::size_t sheets = 0;
+  std::size_t left_out = 0;        // splats before the near plane, outside of the picture, or without a
+                                   // finite footprint
+  std::size_t sheets = 0;          // that have a splat in the picture
 };
 
 // Sheets are the layers of voxels along the axis most parallel to the line of sight. The splats of each add
