@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "model/error.h"
@@ -34,6 +38,28 @@ class SweepFiles : public ::testing::Test {
   Machine machine = machine::load("geforce4-ti4400");
   Trace trace;
 };
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void copy_fields(const TriangleWork& from, TriangleWork& to) {
+  to.quad_count = from.quad_count;
+  to.quads_passed = from.quads_passed;
+  to.tile_count = from.tile_count;
+  to.new_vertices = from.new_vertices;
+  to.pieces = from.pieces;
+  to.outcome = from.outcome;
+}
+
+void copy_fields(const QuadWork& from, QuadWork& to) {
+  to.x = from.x;
+  to.y = from.y;
+  to.covered = from.covered;
+  to.passed = from.passed;
+  to.texel_block_count = from.texel_block_count;
+}
 
 using Sweeps = SweepFiles;
 using WorkCaches = SweepFiles;
@@ -152,6 +178,45 @@ TEST_F(WorkCaches, WhatIsCutShortIsNotTaken) {
     std::filesystem::resize_file(cache.path_of("k"), left);
     EXPECT_EQ(cache.read("k", stream), WorkCache::Found::damaged) << left << " bytes";
   }
+}
+
+// The magic, the size and the checksum are right, and what follows them is not a work stream.
+TEST_F(WorkCaches, WhatIsOfAnotherLayoutIsNotTaken) {
+  const WorkCache cache(folder / "cache");
+  cache.write("k", {});
+  const std::string magic = bytes_of(cache.path_of("k")).substr(0, 8);
+  const std::string no_draws = bytes_of(cache.path_of("k")).substr(24);
+  ASSERT_GE(no_draws.size(), sizeof(std::uint64_t));
+  const std::string draws_missing = no_draws.substr(0, no_draws.size() - 8) + std::string(8, '\x11');
+  WorkStream stream;
+  for (const std::string& body : {std::string(), std::string("x"), no_draws + "x", draws_missing}) {
+    const std::uint64_t header[] = {body.size(), XXH64(body.data(), body.size(), 0)};
+    std::ofstream(cache.path_of("k"), std::ios::binary)
+        << magic << std::string(reinterpret_cast<const char*>(header), sizeof header) << body;
+    EXPECT_EQ(cache.read("k", stream), WorkCache::Found::damaged) << body.size() << " bytes";
+  }
+}
+
+// No byte that nobody has written, so of whatever memory the stream stands in.
+TEST_F(WorkCaches, TheSameStreamIsTheSameBytes) {
+  const WorkCache cache(folder / "cache");
+  const Rendered rendered = render(trace, {});
+  cache.write("a", {rendered.work, rendered.counters});
+  std::vector<DrawWork> elsewhere = rendered.work;
+  const auto copy_into = [](const auto& from, auto& to) {  // value by value, into memory that is not zero
+    std::memset(static_cast<void*>(to.data()), 0xff, to.size() * sizeof to[0]);
+    for (std::size_t i = 0; i < to.size(); ++i) copy_fields(from[i], to[i]);
+  };
+  for (std::size_t i = 0; i < elsewhere.size(); ++i) {
+    copy_into(rendered.work[i].triangles, elsewhere[i].triangles);
+    copy_into(rendered.work[i].quads, elsewhere[i].quads);
+  }
+  cache.write("b", {elsewhere, rendered.counters});
+  EXPECT_TRUE(bytes_of(cache.path_of("a")) == bytes_of(cache.path_of("b")));
+  WorkStream stream;
+  ASSERT_EQ(cache.read("b", stream), WorkCache::Found::yes);
+  cache.write("c", stream);
+  EXPECT_TRUE(bytes_of(cache.path_of("a")) == bytes_of(cache.path_of("c")));
 }
 
 TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {

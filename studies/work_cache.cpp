@@ -7,6 +7,8 @@
 #include <cstring>
 #include <fstream>
 #include <span>
+#include <stdexcept>
+#include <tuple>
 #include <type_traits>
 
 #include "traces/output_files.h"
@@ -15,7 +17,7 @@
 namespace splatscope::studies {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b524f574c5053;  // "SPLWORK1": changes with the layout
+constexpr std::uint64_t kMagic = 0x324b524f574c5053;  // "SPLWORK2": changes with the layout
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -36,19 +38,50 @@ std::string bytes_of(const std::filesystem::path& path) {
   return file ? bytes : std::string{};
 }
 
+// All of them by name: one more does not compile until it is here too.
+template <class Record>
+auto fields_of(Record& record) {
+  if constexpr (std::is_same_v<std::remove_const_t<Record>, TriangleWork>) {
+    auto& [quads, passed, tiles, vertices, pieces, outcome] = record;
+    return std::tie(quads, passed, tiles, vertices, pieces, outcome);
+  } else {
+    static_assert(std::is_same_v<std::remove_const_t<Record>, QuadWork>);
+    auto& [x, y, covered, passed, blocks] = record;
+    return std::tie(x, y, covered, passed, blocks);
+  }
+}
+
+// Such values are stored as they stand in memory; of others, with padding that nobody has written, the
+// fields.
+template <class T>
+constexpr bool kAsItStands = std::has_unique_object_representations_v<T>;
+
+template <class T>
+std::size_t stored_bytes() {
+  if constexpr (kAsItStands<T>) {
+    return sizeof(T);
+  } else {
+    T record;
+    return std::apply([](const auto&... field) { return (sizeof field + ...); }, fields_of(record));
+  }
+}
+
 class Writer {
  public:
   template <class T>
   void add(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    const char* bytes = reinterpret_cast<const char*>(&value);
-    text_.append(bytes, sizeof value);
+    static_assert(kAsItStands<T>);
+    text_.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
   template <class T>
   void add(const std::vector<T>& values) {
-    static_assert(std::is_trivially_copyable_v<T>);
     add(std::uint64_t{values.size()});
-    text_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    if constexpr (kAsItStands<T>) {
+      text_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    } else {
+      for (const T& record : values)
+        std::apply([&](const auto&... field) { (add(field), ...); }, fields_of(record));
+    }
   }
   const std::string& text() const { return text_; }
 
@@ -56,20 +89,31 @@ class Writer {
   std::string text_;
 };
 
+// Throws std::out_of_range where the text ends too early.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
   template <class T>
   void take(T& value) {
+    static_assert(kAsItStands<T>);
     std::memcpy(&value, next(sizeof value), sizeof value);
   }
   template <class T>
   void take(std::vector<T>& values) {
+    values.resize(take_count(stored_bytes<T>()));
+    if constexpr (kAsItStands<T>) {
+      const std::size_t bytes = values.size() * sizeof(T);
+      if (bytes > 0) std::memcpy(values.data(), next(bytes), bytes);
+    } else {
+      for (T& record : values) std::apply([&](auto&... field) { (take(field), ...); }, fields_of(record));
+    }
+  }
+  // Of items that have at least so many bytes each: no more than there is text for.
+  std::size_t take_count(std::size_t bytes_each) {
     std::uint64_t count = 0;
     take(count);
-    if (count > text_.size() / sizeof(T)) throw std::out_of_range("work stream");
-    values.resize(count);
-    if (count > 0) std::memcpy(static_cast<void*>(values.data()), next(count * sizeof(T)), count * sizeof(T));
+    if (count > text_.size() / bytes_each) throw std::out_of_range("work stream");
+    return count;
   }
   bool at_end() const { return text_.empty(); }
 
@@ -82,6 +126,23 @@ class Reader {
   }
   std::string_view text_;
 };
+
+// As `write` has it; throws std::out_of_range where the text is not that.
+WorkStream stream_of(std::string_view body) {
+  WorkStream stream;
+  Reader reader(body);
+  reader.take(stream.counters);
+  stream.work.resize(reader.take_count(sizeof(std::uint32_t)));
+  for (DrawWork& work : stream.work) {
+    reader.take(work.command);
+    reader.take(work.shaded_vertices);
+    reader.take(work.triangles);
+    reader.take(work.quads);
+    reader.take(work.texel_blocks);
+  }
+  if (!reader.at_end()) throw std::out_of_range("work stream");
+  return stream;
+}
 
 }  // namespace
 
@@ -120,19 +181,12 @@ WorkCache::Found WorkCache::read(const std::string& key, WorkStream& stream) con
   if (header.magic != kMagic || header.size != body.size() ||
       header.checksum != hash_of(body.data(), body.size(), 0))
     return Found::damaged;
-  Reader reader(body);
-  std::uint64_t draws = 0;
-  reader.take(stream.counters);
-  reader.take(draws);
-  stream.work.resize(draws);
-  for (DrawWork& work : stream.work) {
-    reader.take(work.command);
-    reader.take(work.shaded_vertices);
-    reader.take(work.triangles);
-    reader.take(work.quads);
-    reader.take(work.texel_blocks);
+  try {
+    stream = stream_of(body);
+  } catch (const std::out_of_range&) {  // of another layout
+    return Found::damaged;
   }
-  return reader.at_end() ? Found::yes : Found::damaged;
+  return Found::yes;
 }
 
 void WorkCache::write(const std::string& key, const WorkStream& stream) const {
