@@ -117,19 +117,6 @@ Needs needs_of(const Trace& trace) {
   return needs;
 }
 
-std::vector<UnitLeftOut> units_left_out(const Needs& needs) {
-  std::vector<UnitLeftOut> left_out;
-  if (!needs.agp) left_out.push_back({"agp", "every buffer is in video memory"});
-  if (!needs.depth) left_out.push_back({"depth", "no draw tests or writes depth"});
-  if (!needs.color) {
-    for (const char* name : {"texture", "pixel", "blend"})
-      left_out.push_back({name, "no draw writes colour"});
-  } else if (!needs.texture) {
-    left_out.push_back({"texture", "no draw that writes colour samples a texture"});
-  }
-  return left_out;
-}
-
 PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout) {
   PreparedDraws prepared;
   std::map<std::uint32_t, std::size_t> program_numbers;
@@ -167,6 +154,8 @@ void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice) {
     throw ModelError("command " + std::to_string(job.command) + " of the trace has no work record");
   job.work = &work;
   check_work(job);
+  job.triangles_clipped = static_cast<std::uint64_t>(std::ranges::count_if(
+      work.triangles, [](const TriangleWork& triangle) { return triangle.pieces > 1; }));
   if (!work.samples_only) count_items(job);  // the units do; an estimate does not look at these
 }
 

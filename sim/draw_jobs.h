@@ -36,13 +36,6 @@ struct Needs {
 };
 Needs needs_of(const Trace& trace);
 
-// A unit that the trace does not need, and why.
-struct UnitLeftOut {
-  std::string name;
-  std::string why;
-};
-std::vector<UnitLeftOut> units_left_out(const Needs& needs);
-
 // Clocks of a quad in the pixel unit: its arithmetic instructions at `pixel.instructions_per_clock`, at
 // least 1.
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec);

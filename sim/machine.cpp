@@ -276,7 +276,7 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraw
   const Needs needs = choice == UnitChoice::all ? Needs{true, true, true, true} : needs_of(trace);
   machine->vertex_programs = std::move(draws.vertex_programs);
   machine->jobs = std::move(draws.jobs);
-  machine->left_out = units_left_out(needs);
+  machine->built = needs;
 
   Builder build(*machine, spec);
   const Units units = create_units(build, *machine, trace, spec, layout, needs);

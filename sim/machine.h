@@ -34,7 +34,7 @@ struct SimulatedMachine {
   std::vector<std::unique_ptr<Unit>> units;  // in the order in which they are called, core before bus
   std::vector<std::unique_ptr<ChannelState>> channels;
   std::vector<std::unique_ptr<MemoryPort>> ports;
-  std::vector<UnitLeftOut> left_out;
+  Needs built;                      // what there is of the units that a trace may do without
   std::vector<const Unit*> memory;  // of the units: the memory channels
   Host* host = nullptr;
   PrimitiveAssembly* assembly = nullptr;

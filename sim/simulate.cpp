@@ -48,7 +48,7 @@ Result run(SimulatedMachine& machine, const Trace& trace, const std::function<vo
     result.command_ends.push_back(machine.core_cycle(end));
   }
   result.frame_cycles = cycles_of_frames(trace, result);
-  result.units_left_out = machine.left_out;
+  result.units_left_out = left_out(trace, machine.built, machine.jobs);
   for (Observer* observer : observers) observer->end(result);
   if (progress) progress(1);
   return result;

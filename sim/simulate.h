@@ -13,6 +13,7 @@
 #include "model/work/work.h"
 #include "sim/kernel/clock_domain.h"
 #include "sim/kernel/observer.h"
+#include "sim/left_out.h"
 #include "sim/machine.h"
 
 // When it happens: the cycle-level timing of a trace on a machine.

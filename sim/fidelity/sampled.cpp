@@ -112,7 +112,7 @@ class Sampler {
       result.command_ends.push_back(static_cast<Cycle>(std::llround(estimated(machine_->core_cycle(end)))));
     result.frame_cycles = cycles_of_frames(trace_, result);
     add_books(result);
-    result.units_left_out = machine_->left_out;
+    result.units_left_out = left_out(trace_, machine_->built, machine_->jobs);
     return result;
   }
 

@@ -120,7 +120,7 @@ TEST(Sampled, SmallTracesAreSimulatedWhole) {
       EXPECT_EQ(sampled.units[i].busy, simulated.units[i].busy);
       EXPECT_EQ(sampled.units[i].blocked_by, simulated.units[i].blocked_by);
     }
-    EXPECT_EQ(sampled.units_left_out.size(), simulated.units_left_out.size());
+    EXPECT_EQ(sampled.units_left_out, simulated.units_left_out);
   }
 }
 

@@ -138,7 +138,7 @@ class ThroughputEstimate::State {
     add_unit(result, "command", busy_[kCommand]);
     if (needs.agp) add_unit(result, "agp", busy_[kAgp]);
     add_unit(result, "host", busy_[kHost]);
-    result.units_left_out = units_left_out(needs);
+    result.units_left_out = left_out(trace_, needs, draws_.jobs);
   }
 
   const Trace& trace_;

@@ -92,7 +92,7 @@ TEST(Throughput, KnowsTheUnitsThatATraceNeeds) {
       EXPECT_EQ(estimate.units[i].name, simulated.units[i].name);
       EXPECT_EQ(estimate.units[i].busy + estimate.units[i].starved, estimate.cycles);
     }
-    EXPECT_EQ(estimate.units_left_out.size(), simulated.units_left_out.size());
+    EXPECT_EQ(estimate.units_left_out, simulated.units_left_out);
   }
 }
 

@@ -26,6 +26,7 @@ struct DrawJob {
   std::uint32_t vertex_address = 0;  // of base vertex 0, in the memory it lies in
   std::uint32_t index_address = 0;   // of the first index
   std::uint32_t texture_address = 0;
+  std::uint64_t triangles_clipped = 0;   // into several pieces, of the whole draw also where it is sampled
   std::uint64_t triangles_set_up = 0;    // not rejected before setup
   std::uint64_t colored_quads = 0;       // quads that go on to texture, pixel unit and blending
   std::span<const Cut> cuts;             // in order
