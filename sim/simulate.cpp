@@ -12,6 +12,7 @@ void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit,
     result.statistics.push_back({unit.name(), std::string(statistic.name), std::string(statistic.unit),
                                  std::string(statistic.what), statistic.value});
   }
+  if (!unit.had_events()) return;  // the same hash, whether it is there or not
   result.event_hash = (std::rotl(result.event_hash, 7) ^ unit.event_hash()) * 0x9e3779b97f4a7c15u;
 }
 

@@ -54,6 +54,7 @@ TEST_P(RandomTraces, UnitsThatNoDrawNeedsChangeNothing) {
   EXPECT_TRUE(units_without(all).empty());
   EXPECT_EQ(all.units.size(), needed.units.size() + units_without(needed).size());
   EXPECT_EQ(all.cycles, needed.cycles);
+  EXPECT_EQ(all.event_hash, needed.event_hash);
   EXPECT_EQ(all.command_ends, needed.command_ends);
   for (const UnitBooks& books : needed.units) {
     const UnitBooks& same = *books_of(all, books.name);

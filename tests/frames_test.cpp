@@ -2,6 +2,7 @@
 // the two schedulers against each other.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <numeric>
 
@@ -154,6 +155,32 @@ TEST_P(ReducedFrame, ThroughputComesWithinTenPercentOfTheCycles) {
   EXPECT_NEAR(
       1.0, static_cast<double>(estimate.timing->cycles) / static_cast<double>(simulated.timing->cycles), 0.1);
   EXPECT_EQ(estimate.rendered.frame, simulated.rendered.frame);
+}
+
+// A machine with every unit that it can have times a frame like the one with what the frame needs.
+TEST_P(ReducedFrame, WhatWasLeftOutChangesNothing) {
+  const auto& [name, algorithm] = GetParam();
+  const Machine machine = machine::load(name);
+  const Trace trace = traces::record(reduced_scene(algorithm), machine.numbers).trace;
+  const FrameRun run = run_frame(trace, machine, Fidelity::cycle);
+  const sim::Result& needed = *run.timing;
+  RenderOptions options;
+  options.formats = machine.numbers;
+  options.vertex_cache_entries = machine.vertex.cache_entries;
+  const Rendered rendered = render(trace, options);
+  const sim::Result all =
+      sim::simulate(trace, rendered.work, machine, sim::Scheduler::skip_ahead, {}, {}, sim::UnitChoice::all);
+  EXPECT_EQ(rendered.frame, run.rendered.frame);
+  EXPECT_GT(all.units.size(), needed.units.size());
+  EXPECT_EQ(all.event_hash, needed.event_hash);
+  EXPECT_EQ(all.cycles, needed.cycles);
+  EXPECT_EQ(all.command_ends, needed.command_ends);
+  for (const sim::UnitBooks& books : needed.units) {
+    const auto same = std::ranges::find(all.units, books.name, &sim::UnitBooks::name);
+    ASSERT_NE(same, all.units.end()) << books.name;
+    EXPECT_EQ(same->busy, books.busy) << books.name;
+    EXPECT_EQ(same->blocked_by, books.blocked_by) << books.name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -51,6 +51,7 @@ class Unit {
 
   // Of every retirement and every decision so far, with its cycle and in its order.
   std::uint64_t event_hash() const { return event_hash_; }
+  bool had_events() const { return event_hash_ != kNoEvents; }
 
  protected:
   static Step busy(Cycle next) { return {next, Step::kBusy}; }
@@ -68,7 +69,8 @@ class Unit {
   ClockDomain* domain_ = nullptr;
   int place_ = 0;
   std::uint32_t number_ = 0;
-  std::uint64_t event_hash_ = 0x243f6a8885a308d3u;
+  static constexpr std::uint64_t kNoEvents = 0x243f6a8885a308d3u;
+  std::uint64_t event_hash_ = kNoEvents;
 };
 
 }  // namespace splatscope::sim

@@ -29,6 +29,13 @@ MemoryChannel::MemoryChannel(std::string name, const Machine::Memory& spec)
   queue_.reserve(static_cast<std::size_t>(spec.schedule_queue));
 }
 
+void MemoryChannel::connect(MemoryPort& port, Channel<MemoryRequest>& requests) {
+  auto name = static_cast<std::uint64_t>(std::ranges::count_if(
+      clients_, [&](const Client& other) { return &other.port->client() == &port.client(); }));
+  for (const char letter : port.client().name()) name = 31 * name + static_cast<unsigned char>(letter);
+  clients_.push_back({&port, &requests, name});
+}
+
 MemoryChannel::Entry MemoryChannel::entry_of(const MemoryRequest& request, std::size_t client) const {
   // The channel's own address: without the bits that chose the channel.
   const std::uint32_t above = request.address >> (interleave_shift_ + channel_shift_);
@@ -114,7 +121,7 @@ void MemoryChannel::issue(Cycle now, std::size_t index) {
   const Cycle preparation = precharge_ + activate_ + cas_;
   next_issue_ = std::max(now + 1, bus_free_ > preparation ? bus_free_ - preparation : 0);
 
-  event(now, (first << 16) ^ (std::uint64_t{entry.client} << 8) ^ entry.bank);
+  event(now, (first << 16) ^ (clients_[entry.client].name << 8) ^ entry.bank);
   if (entry.write) {
     ++writes_;
     clients_[entry.client].port->written(bus_free_);

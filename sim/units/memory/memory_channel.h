@@ -14,7 +14,7 @@ class MemoryChannel final : public Unit {
   MemoryChannel(std::string name, const Machine::Memory& spec);
 
   // Adds a client; the channel is the client's request channel to this unit.
-  void connect(MemoryPort& port, Channel<MemoryRequest>& requests) { clients_.push_back({&port, &requests}); }
+  void connect(MemoryPort& port, Channel<MemoryRequest>& requests);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics() const override;
@@ -24,6 +24,7 @@ class MemoryChannel final : public Unit {
   struct Client {
     MemoryPort* port;
     Channel<MemoryRequest>* requests;
+    std::uint64_t name;  // in events: the same whatever other clients there are
   };
   struct Entry {
     std::uint32_t row;
