@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
+#include "studies/measure.h"
 #include "studies/peak_memory.h"
+#include "studies/reproduction/table2.h"
 #include "traces/weight_capture.h"
 
 namespace splatscope::studies {
@@ -16,9 +18,6 @@ constexpr Fidelity kAll[] = {Fidelity::functional, Fidelity::throughput, Fidelit
                              Fidelity::referee};
 constexpr std::string_view kTable1[] = {"checkerboard-no-ewa", "checkerboard-ewa-per-pixel",
                                         "checkerboard-ewa-per-surfel"};
-constexpr std::string_view kTable2[] = {"salamander", "chameleon", "wasp", "fiesta"};
-constexpr int kTable2Surfels = 30000;
-constexpr double kLeastError = 1e-6;  // that the plot shows
 
 struct Timed {
   std::optional<sim::Result> timing;
@@ -38,10 +37,11 @@ Timed time_run(const Trace& trace, const Machine& machine, Fidelity fidelity, in
   return timed;
 }
 
-FidelityRow row_of(const std::string& scene, std::string_view machine, Fidelity fidelity,
+FidelityRow row_of(const traces::Scene& scene, std::string_view machine, Fidelity fidelity,
                    const Timed& timed) {
   FidelityRow row;
-  row.scene = scene;
+  row.scene = scene.name;
+  row.resolution = scene.frame.width;
   row.machine = machine;
   row.fidelity = fidelity;
   row.host_seconds = timed.seconds;
@@ -54,234 +54,139 @@ FidelityRow row_of(const std::string& scene, std::string_view machine, Fidelity 
   return row;
 }
 
+std::vector<DrawWork> work_of(const Trace& trace, const Machine& machine) {
+  RenderOptions options;
+  options.formats = machine.numbers;
+  options.vertex_cache_entries = machine.vertex.cache_entries;
+  return render(trace, options).work;
+}
+
+// What other samples say.
+void add_seeds(const Trace& trace, const Machine& machine, FidelityRow& row) {
+  const std::vector<DrawWork> work = work_of(trace, machine);
+  for (std::uint64_t seed = 0; seed < kSampleSeeds; ++seed) {
+    const sim::Result result =
+        time_frame(trace, work, machine, Fidelity::sampled, {.seed = seed, .heat_maps = nullptr});
+    row.seeds.push_back({static_cast<double>(result.cycles), result.cycles_plus_minus});
+  }
+}
+
 // Utilisations become errors.
-void compare_with(const FidelityRow& referee, FidelityRow& row) {
+void compare_with(const FidelityRow& truth, FidelityRow& row) {
   if (row.cycles == 0) return;
-  row.error = static_cast<double>(row.cycles) / static_cast<double>(referee.cycles) - 1;
-  for (std::size_t i = 0; i < row.units.size(); ++i) row.units[i].error -= referee.units[i].error;
+  const auto cycles = static_cast<double>(truth.cycles);
+  row.error = static_cast<double>(row.cycles) / cycles - 1;
+  for (FidelityRow::Seed& seed : row.seeds) seed.error = seed.cycles / cycles - 1;
+  for (std::size_t i = 0; i < row.units.size(); ++i) row.units[i].error -= truth.units[i].error;
 }
 
-double worst_unit(const FidelityRow& row) {
-  double worst = 0;
-  for (const auto& unit : row.units) worst = std::max(worst, std::abs(unit.error));
-  return worst;
-}
-
-// What one fidelity does over all frames.
-struct Summary {
-  Fidelity fidelity;
-  double seconds = 0, cycles = 0, megabytes = 0;
-  double worst_error = 0, mean_error = 0, worst_unit = 0;
-  int frames = 0, covered = 0;  // by the interval
+// Host seconds of the timing alone.
+struct Saving {
+  double needed = 0, all = 0;  // units
+  double share() const { return 1 - needed / all; }
 };
 
-std::vector<Summary> summaries_of(const std::vector<FidelityRow>& rows) {
-  std::vector<Summary> summaries;
-  for (const Fidelity fidelity : kAll) {
-    Summary s;
-    s.fidelity = fidelity;
-    for (const FidelityRow& row : rows) {
-      if (row.fidelity != fidelity) continue;
-      const auto cycles = static_cast<double>(row.cycles);
-      ++s.frames;
-      s.seconds += row.host_seconds;
-      s.cycles += cycles;
-      s.megabytes = std::max(s.megabytes, row.peak_megabytes);
-      s.worst_error = std::max(s.worst_error, std::abs(row.error));
-      s.mean_error += std::abs(row.error);
-      s.worst_unit = std::max(s.worst_unit, worst_unit(row));
-      s.covered += std::abs(cycles - cycles / (1 + row.error)) <= row.cycles_plus_minus;
-    }
-    s.mean_error /= std::max(s.frames, 1);
-    summaries.push_back(s);
-  }
-  return summaries;
-}
-
-std::vector<std::string> cells_of(const Summary& s) {
-  if (s.cycles == 0)
-    return {std::string(name(s.fidelity)),     fmt::format("{:.3f}", s.seconds / s.frames), "", "", "", "",
-            fmt::format("{:.0f}", s.megabytes)};
-  return {std::string(name(s.fidelity)),
-          fmt::format("{:.3f}", s.seconds / s.frames),
-          fmt::format("{:.1f}", s.cycles / s.seconds / 1e6),
-          fmt::format("{:.2f} %", 100 * s.worst_error),
-          fmt::format("{:.2f} %", 100 * s.mean_error),
-          fmt::format("{:.1f}", 100 * s.worst_unit),
-          fmt::format("{:.0f}", s.megabytes)};
-}
-
-std::string text_of(const std::vector<Summary>& summaries) {
-  std::string text = fmt::format("{:<11} {:>11} {:>9} {:>12} {:>11} {:>12} {:>8}\n", "fidelity", "s a frame",
-                                 "Mcycles/s", "worst error", "mean error", "utilisation", "peak MB");
-  for (const Summary& s : summaries) {
-    const auto cells = cells_of(s);
-    text += fmt::format("{:<11} {:>11} {:>9} {:>12} {:>11} {:>12} {:>8}\n", cells[0], cells[1], cells[2],
-                        cells[3], cells[4], cells[5], cells[6]);
-    if (s.fidelity == Fidelity::sampled)
-      text += fmt::format("            its interval covers {} of {} frames\n", s.covered, s.frames);
-  }
-  return text;
-}
-
-void add_frames(Report& report, const std::vector<FidelityRow>& rows) {
-  using enum Report::Align;
-  std::vector<std::vector<std::string>> cells;
-  for (const FidelityRow& row : rows) {
-    const bool timed = row.cycles != 0;
-    const auto cycles = static_cast<double>(row.cycles);
-    std::string shown = timed ? fmt::format("{}", row.cycles) : "";
-    if (row.cycles_plus_minus > 0) shown += fmt::format(" ± {:.2f} %", 100 * row.cycles_plus_minus / cycles);
-    cells.push_back({row.scene, row.machine, std::string(name(row.fidelity)),
-                     fmt::format("{:.3f}", row.host_seconds),
-                     timed ? fmt::format("{:.1f}", cycles / row.host_seconds / 1e6) : "", shown,
-                     timed ? fmt::format("{:+.3f} %", 100 * row.error) : "",
-                     timed ? fmt::format("{:.1f}", 100 * worst_unit(row)) : "",
-                     fmt::format("{:.0f}", row.peak_megabytes)});
-  }
-  report.table("Every frame. Utilisation: the worst unit's, in percentage points of the referee's.",
-               {{"scene"},
-                {"machine"},
-                {"fidelity"},
-                {"host s", number},
-                {"Mcycles/s", number},
-                {"cycles", number},
-                {"error", number},
-                {"utilisation", number},
-                {"peak MB", number}},
-               cells);
-}
-
-// The worst error of each unit over all frames, by fidelity.
-void add_units(Report& report, const std::vector<FidelityRow>& rows) {
-  using enum Report::Align;
-  std::vector<std::string> units;
-  for (const FidelityRow& row : rows) {
-    for (const auto& unit : row.units) {
-      if (std::ranges::find(units, unit.unit) == units.end()) units.push_back(unit.unit);
+// Adds what the time of a frame takes with the units that it needs and with every unit, one right after the
+// other, each the least of `repetitions`.
+void add_saving(const Trace& trace, const Machine& machine, sim::Scheduler scheduler, int repetitions,
+                Saving& saving) {
+  const std::vector<DrawWork> work = work_of(trace, machine);
+  constexpr double kMost = std::numeric_limits<double>::max();
+  double needed = kMost, all = kMost;
+  for (int i = 0; i < repetitions; ++i) {
+    for (const auto& [choice, least] :
+         {std::pair(sim::UnitChoice::needed, &needed), {sim::UnitChoice::all, &all}}) {
+      const auto start = HostClock::now();
+      sim::simulate(trace, work, machine, scheduler, {}, {}, choice);
+      *least = std::min(*least, seconds_since(start));
     }
   }
-  std::vector<std::vector<std::string>> cells;
-  for (const std::string& name : units) {
-    cells.push_back({name});
-    for (const Fidelity fidelity : std::span(kAll).subspan(1, 3)) {
-      double worst = 0;
-      for (const FidelityRow& row : rows) {
-        if (row.fidelity != fidelity) continue;
-        for (const auto& unit : row.units) {
-          if (unit.unit == name) worst = std::max(worst, std::abs(unit.error));
-        }
-      }
-      cells.back().push_back(fmt::format("{:.2f}", 100 * worst));
-    }
-  }
-  report.table("Utilisation of each unit: the worst error over all frames, in percentage points.",
-               {{"unit"}, {"throughput", number}, {"sampled", number}, {"cycle", number}}, cells);
+  saving.needed += needed;
+  saving.all += all;
 }
 
-void add_to(Findings& findings, const std::vector<FidelityRow>& rows) {
-  using enum Report::Align;
-  std::vector<std::vector<std::string>> cells;
-  for (const Summary& summary : summaries_of(rows)) cells.push_back(cells_of(summary));
-  Report& report = findings.report();
-  report.heading("Speed against accuracy");
-  report.paragraph(fmt::format(
-      "All frames of Table 1, and the stand-ins of Table 2 with {} surfels each, at 512 x 512 on both "
-      "machines. Host seconds hold function and timing, and are the least of three runs (the referee's: of "
-      "one). Errors are against the referee. Memory is that of the whole process, the trace included.",
-      kTable2Surfels));
-  report.table("Over all frames. Utilisation: the worst of any unit, in percentage points.",
-               {{"fidelity"},
-                {"s a frame", number},
-                {"Mcycles/s", number},
-                {"worst error", number},
-                {"mean error", number},
-                {"utilisation", number},
-                {"peak MB", number}},
-               cells);
-  Plot plot{.title = "Error against speed (no error: drawn at 0.0001 %)",
-            .x_label = "simulated cycles a host second, millions",
-            .y_label = "error of the cycles, %",
-            .log_x = true,
-            .log_y = true};
-  for (const Fidelity fidelity : std::span(kAll).subspan(1)) {
-    Plot::Series series{.name = std::string(name(fidelity)), .x = {}, .y = {}, .joined = false};
-    for (const FidelityRow& row : rows) {
-      if (row.fidelity != fidelity) continue;
-      series.x.push_back(static_cast<double>(row.cycles) / row.host_seconds / 1e6);
-      series.y.push_back(100 * std::max(std::abs(row.error), kLeastError));
+void study_saving(Findings& findings, const Progress& progress) {
+  Saving cycle, referee;
+  double done = 0;
+  for (const std::string_view ready : kTable1) {
+    for (const std::string_view name : kMachines) {
+      const Machine machine = machine::load(name);
+      const Trace trace = traces::record(traces::load_scene(ready), machine.numbers).trace;
+      add_saving(trace, machine, sim::Scheduler::skip_ahead, kFidelityRepetitions, cycle);
+      if (ready == kTable1[2]) add_saving(trace, machine, sim::Scheduler::referee, 1, referee);
+      if (progress) progress(++done / (std::size(kTable1) * std::size(kMachines)));
     }
-    plot.series.push_back(std::move(series));
   }
-  findings.plot("fidelity", plot);
-  add_units(report, rows);
-  add_frames(report, rows);
+  findings.say(fmt::format(
+      "leaving out the units that no draw of Table 1 uses saves {:.1f} % of the time that cycle's "
+      "timing takes, and {:.1f} % of the referee's (EWA per surfel)\n",
+      100 * cycle.share(), 100 * referee.share()));
+  findings.result("units_left_out", {{"cycle_saving", cycle.share()}, {"referee_saving", referee.share()}});
 }
 
-nlohmann::ordered_json json_of(const std::vector<FidelityRow>& rows) {
-  auto out = nlohmann::ordered_json::array();
-  for (const FidelityRow& row : rows) {
-    nlohmann::ordered_json entry = {{"scene", row.scene},
-                                    {"machine", row.machine},
-                                    {"fidelity", name(row.fidelity)},
-                                    {"host_seconds", row.host_seconds},
-                                    {"peak_megabytes", row.peak_megabytes}};
-    if (row.cycles != 0) {
-      entry["cycles"] = row.cycles;
-      entry["cycles_plus_minus"] = row.cycles_plus_minus;
-      entry["cycles_per_host_second"] = static_cast<double>(row.cycles) / row.host_seconds;
-      entry["error"] = row.error;
-      for (const auto& unit : row.units) entry["utilisation_errors"][unit.unit] = unit.error;
-    }
-    out.push_back(std::move(entry));
+std::vector<FidelityRow> all_table1_rows(const Progress& progress) {
+  std::vector<FidelityRow> rows;
+  double done = 0;
+  for (const std::string_view ready : kTable1) {
+    const double next = done + 1.0 / std::size(kTable1);
+    const auto frame = fidelity_rows(traces::load_scene(ready), kFidelityRepetitions, Fidelity::referee,
+                                     part(progress, done, next));
+    rows.insert(rows.end(), frame.begin(), frame.end());
+    done = next;
   }
-  return out;
+  return rows;
 }
 
-std::vector<traces::Scene> scenes() {
-  std::vector<traces::Scene> scenes;
-  for (const std::string_view ready : kTable1) scenes.push_back(traces::load_scene(ready));
-  for (const std::string_view model : kTable2) {
-    scenes.push_back(traces::parse_scene(
-        fmt::format("[surfels]\ngenerator = \"{}\"\ncount = {}\n[frame]\nwidth = 512\nheight = 512\n", model,
-                    kTable2Surfels),
-        std::string(model)));
+std::vector<FidelityRow> all_table2_rows(const Progress& progress) {
+  std::size_t points = 0;
+  for (const Table2Model& model : table2_models()) points += 2 * model.points;
+  std::vector<FidelityRow> rows;
+  double done = 0;
+  for (const Table2Model& model : table2_models()) {
+    traces::Scene scene = table2_scene(model);
+    scene.name = model.name;
+    for (const auto& published : model.published) {
+      scene.frame.width = scene.frame.height = published.resolution;
+      const double next = done + static_cast<double>(model.points) / static_cast<double>(points);
+      const auto frame =
+          fidelity_rows(scene, kFidelityRepetitions, Fidelity::cycle, part(progress, done, next));
+      rows.insert(rows.end(), frame.begin(), frame.end());
+      done = next;
+    }
   }
-  return scenes;
+  return rows;
 }
 
 }  // namespace
 
-std::vector<FidelityRow> fidelity_rows(const traces::Scene& scene, int repetitions,
+std::vector<FidelityRow> fidelity_rows(const traces::Scene& scene, int repetitions, Fidelity truth,
                                        const Progress& progress) {
+  const auto fidelities = std::span(kAll).first(truth == Fidelity::referee ? 5 : 4);
   std::vector<FidelityRow> rows;
   for (const std::string_view machine_name : kMachines) {
     const Machine machine = machine::load(machine_name);
     const Trace trace = traces::record(scene, machine.numbers).trace;
     const std::size_t first = rows.size();
-    for (const Fidelity fidelity : kAll) {
-      rows.push_back(
-          row_of(scene.name, machine_name, fidelity, time_run(trace, machine, fidelity, repetitions)));
-      if (progress) progress(static_cast<double>(rows.size()) / (std::size(kMachines) * std::size(kAll)));
+    for (const Fidelity fidelity : fidelities) {
+      rows.push_back(row_of(scene, machine_name, fidelity, time_run(trace, machine, fidelity, repetitions)));
+      if (fidelity == Fidelity::sampled) add_seeds(trace, machine, rows.back());
+      if (progress)
+        progress(static_cast<double>(rows.size()) /
+                 static_cast<double>(std::size(kMachines) * fidelities.size()));
     }
-    const FidelityRow referee = rows.back();
-    for (std::size_t i = first; i < rows.size(); ++i) compare_with(referee, rows[i]);
+    const FidelityRow last = rows.back();
+    for (std::size_t i = first; i < rows.size(); ++i) compare_with(last, rows[i]);
   }
   return rows;
 }
 
 void study_fidelity(Findings& findings, const Progress& progress) {
-  std::vector<FidelityRow> rows;
-  const std::vector<traces::Scene> all = scenes();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double size = static_cast<double>(all.size());
-    const auto of_scene = fidelity_rows(
-        all[i], 3, part(progress, static_cast<double>(i) / size, static_cast<double>(i + 1) / size));
-    rows.insert(rows.end(), of_scene.begin(), of_scene.end());
-  }
-  findings.say(text_of(summaries_of(rows)));
-  add_to(findings, rows);
-  findings.result("fidelity", json_of(rows));
+  const std::vector<FidelityRow> table1 = all_table1_rows(part(progress, 0, 0.4));
+  findings.say(fidelity_text("Table 1", table1));
+  const std::vector<FidelityRow> table2 = all_table2_rows(part(progress, 0.4, 0.9));
+  findings.say(fidelity_text("Table 2", table2));
+  add_fidelity_report(findings, table1, table2);
+  study_saving(findings, part(progress, 0.9, 1));
 }
 
 }  // namespace splatscope::studies

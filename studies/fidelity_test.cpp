@@ -22,6 +22,11 @@ TEST(FidelityStudy, EveryFidelityStandsBesideTheReferee) {
     EXPECT_EQ(row.cycles == 0, row.fidelity == Fidelity::functional);
     EXPECT_EQ(row.units.empty(), row.fidelity == Fidelity::functional);
     EXPECT_LT(std::abs(row.error), 0.1);
+    EXPECT_EQ(row.seeds.size(), row.fidelity == Fidelity::sampled ? kSampleSeeds : 0);
+    for (const FidelityRow::Seed& seed : row.seeds) {
+      EXPECT_EQ(seed.error, 0);
+      EXPECT_TRUE(seed.covers());
+    }
     if (row.fidelity == Fidelity::throughput) {
       EXPECT_NE(row.error, 0);
     }
@@ -31,6 +36,36 @@ TEST(FidelityStudy, EveryFidelityStandsBesideTheReferee) {
       for (const auto& unit : row.units) EXPECT_EQ(unit.error, 0) << unit.unit;
     }
   }
+}
+
+// Where the referee takes too long.
+TEST(FidelityStudy, CycleIsTheTruthInItsPlace) {
+  const traces::Scene scene = traces::parse_scene(
+      "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
+      "[capture]\nviews = 1\nframe_size = 64\n",
+      "plane");
+  const std::vector<FidelityRow> rows = fidelity_rows(scene, 1, Fidelity::cycle);
+  ASSERT_EQ(8u, rows.size());
+  EXPECT_EQ(rows.back().fidelity, Fidelity::cycle);
+  EXPECT_EQ(rows.back().error, 0);
+  EXPECT_EQ(rows.back().resolution, 64);
+  const std::string text = fidelity_text("Table 2", rows);
+  EXPECT_TRUE(text.starts_with("Table 2, 2 frames against cycle\n")) << text;
+  EXPECT_EQ(text.find("referee"), std::string::npos) << text;
+  EXPECT_NE(text.find("covers 20 of 20\n"), std::string::npos) << text;
+}
+
+// The worst and the mean are of every seed, and so is the coverage.
+TEST(FidelityStudy, SampledIsJudgedByEverySeed) {
+  FidelityRow functional, sampled, cycle;
+  sampled.fidelity = Fidelity::sampled;
+  sampled.cycles = cycle.cycles = 1000;
+  sampled.host_seconds = cycle.host_seconds = functional.host_seconds = 1;
+  sampled.seeds = {{1000, 4, 0}, {1020, 21, 0.02}, {990, 8, -0.01}, {1010, 9, 0.01}};
+  cycle.fidelity = Fidelity::cycle;
+  const std::string text = fidelity_text("Table 1", std::vector{functional, sampled, cycle});
+  EXPECT_NE(text.find(" 2.00 %      1.00 %"), std::string::npos) << text;
+  EXPECT_NE(text.find("+- 1.04 % on average and 2.06 % at most, covers 2 of 4\n"), std::string::npos) << text;
 }
 
 TEST(PeakMemory, GrowsWithWhatIsTakenAndStartsAgain) {

@@ -16,13 +16,6 @@ constexpr Table2Model kModels[] = {
 };
 constexpr std::string_view kStandIn = "our own model of that name, with as many points";
 
-traces::Scene scene_of(const Table2Model& model, const Progress& progress) {
-  return traces::parse_scene(fmt::format("surfels = {{ generator = \"{}\", count = {} }}\nhierarchy.culling "
-                                         "= \"blocks\"\ncapture.views = 1\n",
-                                         model.name, model.points),
-                             "table2", progress);
-}
-
 Table2Row row_of(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress) {
   const FrameRun run = run_frame(trace, machine, fidelity, progress);
   Table2Row row;
@@ -102,6 +95,13 @@ std::span<const Table2Model> table2_models() {
   return kModels;
 }
 
+traces::Scene table2_scene(const Table2Model& model, const Progress& progress) {
+  return traces::parse_scene(fmt::format("surfels = {{ generator = \"{}\", count = {} }}\nhierarchy.culling "
+                                         "= \"blocks\"\ncapture.views = 1\n",
+                                         model.name, model.points),
+                             "table2", progress);
+}
+
 std::vector<Table2Row> table2_rows(Fidelity fidelity, const Progress& progress) {
   std::size_t points = 0;
   for (const Table2Model& model : kModels) points += model.points;
@@ -112,7 +112,7 @@ std::vector<Table2Row> table2_rows(Fidelity fidelity, const Progress& progress) 
     const auto step = [&](double from, double to) {
       return part(progress, done + share * from, done + share * to);
     };
-    traces::Scene scene = scene_of(model, step(0, 0.2));
+    traces::Scene scene = table2_scene(model, step(0, 0.2));
     double frame = 0;
     for (const auto& [resolution, radeon, ti4400] : model.published) {
       for (const auto& [name, fps] : {std::pair("radeon-8500", radeon), {"geforce4-ti4400", ti4400}}) {

@@ -21,6 +21,8 @@ struct Table2Model {
   } published[2];
 };
 std::span<const Table2Model> table2_models();
+// The stand-in as it is drawn, but for its frame's size.
+traces::Scene table2_scene(const Table2Model& model, const Progress& progress = {});
 
 struct Table2Row {
   std::string model;
