@@ -54,7 +54,8 @@ class RandomMaker {
     return made;
   }
 
-  // Queues hold 1 to 16 items; caches and DRAM are small, so that a small trace fills them.
+  // Queues hold 1 to 16 items; caches and DRAM are small, so that a small trace fills them. The
+  // post-transform FIFO is left as it is: the work tells the timing which vertices are new.
   Machine machine() {
     Machine made;
     const auto depth = [&] { return int(number(1, 16)); };
@@ -99,6 +100,10 @@ class RandomMaker {
     made.agp = {power(4, 2), double(number(0, 500)), depth()};
     made.host.command_nanoseconds = number(0, 2000);
     made.host.uncached_read_nanoseconds = number(1, 40);
+    made.clock.core_megahertz = number(20, 400);  // below, at and above the bus
+    made.host.uncached_read_bytes = int(number(1, 16));
+    made.host.division_nanoseconds = number(0, 100);
+    made.host.write_bytes_per_clock = int(number(1, 16));
     if (chance(0.2)) made.numbers.frame = FrameFormat::float32;  // lines over several memory channels
     if (chance(0.2)) made.numbers.depth = DepthFormat::z16;
     return made;
