@@ -55,6 +55,21 @@ TEST(FidelityStudy, CycleIsTheTruthInItsPlace) {
   EXPECT_NE(text.find("covers 20 of 20\n"), std::string::npos) << text;
 }
 
+TEST(FidelityStudy, AnEstimateHasNoEventHash) {
+  const traces::Scene scene = traces::parse_scene(
+      "[surfels]\ngenerator = \"plane\"\ncolumns = 8\nrows = 8\n[frame]\nwidth = 32\n"
+      "height = 32\n[splatting]\nalgorithm = \"no-ewa\"\n",
+      "plane");
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Trace trace = traces::record(scene, machine.numbers).trace;
+  for (const Fidelity fidelity :
+       {Fidelity::throughput, Fidelity::sampled, Fidelity::cycle, Fidelity::referee}) {
+    const auto frames = timing_json(*run_frame(trace, machine, fidelity).timing)["frames"];
+    ASSERT_EQ(frames.size(), 1u);
+    EXPECT_EQ(frames[0].contains("event_hash"), fidelity >= Fidelity::cycle) << name(fidelity);
+  }
+}
+
 // The worst and the mean are of every seed, and so is the coverage.
 TEST(FidelityStudy, SampledIsJudgedByEverySeed) {
   FidelityRow functional, sampled, cycle;

@@ -36,9 +36,9 @@ Json frames_json(const sim::Result& timing) {
   for (const sim::Cycle cycles : timing.frame_cycles) {
     const double seconds = timing.seconds_of(cycles);
     Json frame = {{"cycles", cycles}, {"milliseconds", 1000 * seconds}, {"frames_per_second", 1 / seconds}};
-    // Both of the whole run.
+    // Both of the whole run; an estimate has no events.
     if (timing.cycles_plus_minus > 0) frame["cycles_plus_minus"] = timing.cycles_plus_minus;
-    frame["event_hash"] = fmt::format("{:016x}", timing.event_hash);
+    if (timing.event_hash != 0) frame["event_hash"] = fmt::format("{:016x}", timing.event_hash);
     out.push_back(std::move(frame));
   }
   return out;
