@@ -108,8 +108,13 @@ const Parameter& require(std::string_view name, const Place& place) {
                           : fmt::format("unknown key {}, expected one of {}", name, keys));
 }
 
+// Of a value for which a file says nothing else.
+Machine::Origin origin_without_source(std::string_view file) {
+  return {"stand-in", fmt::format("{}, without a source", file), ""};
+}
+
 Machine::Origin read_origin(const toml::table& table, std::string_view name, std::string_view file) {
-  Machine::Origin origin;
+  Machine::Origin origin = origin_without_source(file);
   for (const auto& [key, node] : table) {
     if (key == "value") continue;
     const Place place = place_of(node, file);
@@ -140,7 +145,7 @@ void read_parameter(Machine& machine, const std::string& name, const toml::node&
   const toml::table* table = node.as_table();
   if (!table) {
     assign(machine, parameter, node, place);
-    machine.origins[name] = {"stand-in", std::string(file), ""};
+    machine.origins[name] = origin_without_source(file);
     return;
   }
   const toml::node* value = table->get("value");
@@ -215,6 +220,18 @@ std::vector<std::string_view> built_in_names() {
   return names;
 }
 
+namespace {
+
+// A file that starts from no other machine is one of its own; an empty one would be a machine of defaults.
+void check_own_machine(const Machine& machine, const Place& place) {
+  if (!machine.title.empty() && !machine.origins.empty()) return;
+  place.fail(fmt::format("no base and no {}, expected base = \"{}\", or a title and parameters of its own",
+                         machine.title.empty() ? "title" : "parameters",
+                         fmt::join(built_in_names(), "\" or \"")));
+}
+
+}  // namespace
+
 Machine parse(std::string_view text, std::string_view file) {
   const toml::table root = parse_toml(text, file);
   Machine machine;
@@ -227,6 +244,7 @@ Machine parse(std::string_view text, std::string_view file) {
     }
     machine = load(name);
   }
+  const bool is_own = !root.contains("base");
   machine.name = std::string(stem(file));
   for (const auto& [key, node] : root) {
     if (key == "base") continue;
@@ -244,6 +262,7 @@ Machine parse(std::string_view text, std::string_view file) {
       read_parameter(machine, fmt::format("{}.{}", key.str(), name.str()), value, file);
     }
   }
+  if (is_own) check_own_machine(machine, {file, 0});
   check_together(machine, {file, 0});
   return machine;
 }

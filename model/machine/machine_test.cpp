@@ -82,12 +82,40 @@ TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
             "fitted, stand-in");
   EXPECT_EQ(message_of("[vertex]\nunits = { confidence = \"fitted\" }\n"),
             "m.toml:2: vertex.units has no value, expected { value = ..., confidence = ..., source = ... }");
-  EXPECT_EQ(message_of("[memory]\nchannels = 3\n"), "m.toml: memory.channels is 3, expected a power of two");
+  EXPECT_EQ(message_of("title = \"a\"\n[memory]\nchannels = 3\n"),
+            "m.toml: memory.channels is 3, expected a power of two");
   EXPECT_TRUE(message_of("[shader]\nunits = 2\n")
                   .starts_with("m.toml:1: unknown key shader, expected title, base or"));
   EXPECT_TRUE(message_of("title = \"a\"\n[vertex\n").starts_with("m.toml:2: "));
   EXPECT_EQ(message_of("base = \"voodoo\"\n"),
             "m.toml:1: no machine \"voodoo\", expected geforce4-ti4400 or radeon-8500");
+}
+
+// Such a file would be a machine of defaults.
+TEST(Machine, AFileWithoutABaseIsAMachineOfItsOwn) {
+  const std::string expected =
+      ", expected base = \"geforce4-ti4400\" or \"radeon-8500\", or a title and parameters of its own";
+  EXPECT_EQ(message_of(""), "m.toml: no base and no title" + expected);
+  EXPECT_EQ(message_of("[vertex]\nunits = 3\n"), "m.toml: no base and no title" + expected);
+  EXPECT_EQ(message_of("title = \"Mine\"\n"), "m.toml: no base and no parameters" + expected);
+  EXPECT_EQ(parse("title = \"Mine\"\n[vertex]\nunits = 3\n", "m.toml").vertex.units, 3);
+  EXPECT_EQ(parse("base = \"radeon-8500\"\n", "m.toml").memory.channels, 2);
+}
+
+TEST(Machine, AValueWithoutASourceSaysSo) {
+  const Machine machine = parse(
+      "base = \"radeon-8500\"\n[vertex]\nunits = 3\nthreads = { value = 2 }\n"
+      "vector_latency = { value = 5, source = \"a guess\" }\n"
+      "scalar_latency = { value = 5, confidence = \"measured\" }\n",
+      "dir/m.toml");
+  const auto says = [&](std::string_view name) {
+    const Machine::Origin& origin = machine.origins.find(name)->second;
+    return origin.confidence + ": " + origin.source;
+  };
+  EXPECT_EQ(says("vertex.units"), "stand-in: dir/m.toml, without a source");
+  EXPECT_EQ(says("vertex.threads"), "stand-in: dir/m.toml, without a source");
+  EXPECT_EQ(says("vertex.vector_latency"), "stand-in: a guess");
+  EXPECT_EQ(says("vertex.scalar_latency"), "measured: dir/m.toml, without a source");
 }
 
 TEST(Machine, AFileMayChangeABase) {
