@@ -73,6 +73,8 @@ void print(const studies::Comparison& c) {
     std::cout << fmt::format(", {:.1f} dB over the {} of them off edges, at worst {:.0f}/255, ",
                              c.psnr_off_edges, c.pixels_off_edges, c.worst)
               << fmt::format("{} of {} pixels inside the silhouette are holes", c.holes, c.inside_pixels);
+    if (c.rounded_to_black > 0)
+      std::cout << fmt::format(", {} more are covered and rounded to black", c.rounded_to_black);
   } else if (c.surface_pixels > 0) {
     std::cout << fmt::format(", at worst {:.0f}/255", c.worst);
   }
@@ -149,11 +151,15 @@ void run(const Options& options, bool quiet) {
                                                  .observers = watching,
                                                  .heat_maps = heat_maps ? &*heat_maps : nullptr});
   running.clear();
-  result.reference = std::move(reference);
+  if (reference) {
+    const studies::Comparison comparison =
+        studies::compare(result.rendered.frame, input.trace, machine, *reference);
+    result.reference = {std::move(*reference), comparison};
+  }
   const std::vector<std::string> observed = observers.commit();
   studies::write_run(input, machine, fidelity, result, options.out);
   print(input, machine, result);
-  if (result.reference) print(studies::compare(result.rendered.frame, *result.reference));
+  if (result.reference) print(result.reference->comparison);
   std::cout << fmt::format("  frame.png, frame.exr, depth.exr, results.json and report.html in {}\n",
                            options.out);
   for (const std::string& line : observed) std::cout << "  " << line << '\n';

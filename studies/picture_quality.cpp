@@ -64,6 +64,7 @@ nlohmann::ordered_json json_of(const Comparison& c) {
           {"pixels_off_edges", c.pixels_off_edges},
           {"surface_pixels", c.surface_pixels},
           {"holes", c.holes},
+          {"rounded_to_black", c.rounded_to_black},
           {"inside_pixels", c.inside_pixels}};
 }
 
@@ -158,14 +159,16 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   row.captured = compare(frame_of(same_weights), reference);
   Machine exact_frame = machine;
   exact_frame.numbers.frame = FrameFormat::float32;
-  row.float_frame = compare(draw(scene, captured, exact_frame), reference);
+  const Frame unrounded = draw(scene, captured, exact_frame);
+  row.float_frame = compare(unrounded, reference);
   const Frame frame = draw(scene, captured, machine);
   row.per_surfel = compare(frame, reference);
-  row.same_weights = compare(frame, undivided(same_weights));
+  row.same_weights = compare(frame, undivided(same_weights), [&] { return Frame(unrounded); });
   row.picture = picture_of(frame);
   scene.splatting.algorithm = traces::Algorithm::ewa_per_pixel;
   const Trace per_pixel = traces::record(scene, machine.numbers).trace;
-  row.per_pixel = compare(run_frame(per_pixel, machine, Fidelity::functional).rendered.frame, reference);
+  row.per_pixel = compare(run_frame(per_pixel, machine, Fidelity::functional).rendered.frame, per_pixel,
+                          machine, reference);
   if (progress) progress(1);
   return row;
 }

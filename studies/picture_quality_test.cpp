@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+#include "studies/run.h"
+
 namespace splatscope::studies {
 namespace {
 
@@ -34,6 +36,28 @@ TEST(PictureQuality, TheWeightsAndTheEdgesCostWhatEightBitsDoNot) {
 TEST(PictureQuality, FiltersThatEndLateAreSmoother) {
   EXPECT_GT(small_sphere("cutoff = 2\nsigma = 0.7071\n").per_surfel.psnr_off_edges,
             small_sphere("").per_surfel.psnr_off_edges);
+}
+
+// Of a surface so dark, and of splats so many and each of so little weight, that they round to nothing.
+TEST(PictureQuality, NoDarkPixelIsAHole) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "dark.ply";
+  std::ofstream out(file);
+  out << "ply\nformat ascii 1.0\nelement vertex 1600\n";
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "radius"})
+    out << "property float " << name << '\n';
+  for (const char* name : {"red", "green", "blue"}) out << "property uchar " << name << '\n';
+  out << "end_header\n";
+  for (int i = 0; i < 1600; ++i) out << i % 40 << ' ' << i / 40 << " 0 0 0 1 4 20 20 20\n";
+  out.close();
+  const traces::Scene scene = traces::parse_scene(
+      "[surfels]\nfile = '" + file.string() + "'\n[frame]\nwidth = 96\nheight = 96\n", "dark.toml");
+  std::filesystem::remove(file);
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Trace trace = traces::record(scene, machine.numbers).trace;
+  const FrameRun run = run_frame(trace, machine, Fidelity::functional);
+  const Comparison c = compare(run.rendered.frame, trace, machine, screen_space_reference(scene));
+  EXPECT_EQ(c.holes, 0u);
+  EXPECT_GT(c.rounded_to_black, 0u);
 }
 
 TEST(PictureQuality, RealModelsAreThoseThatAreThere) {

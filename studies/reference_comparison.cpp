@@ -177,8 +177,10 @@ double psnr(const Frame& frame, const kernels::SplatSums& reference) {
   return surface_difference(frame, reference, {}).psnr;
 }
 
-Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference) {
+Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference,
+                   const std::function<Frame()>& unrounded) {
   Comparison out = surface_difference(frame, reference, off_edges(reference));
+  std::vector<std::size_t> black;
   for (int y = 1; y + 1 < reference.height; ++y) {
     for (int x = 1; x + 1 < reference.width; ++x) {
       if (!is_inside(reference, x, y)) continue;
@@ -186,9 +188,15 @@ Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& refere
       const std::size_t pixel = pixel_index(reference, x, y);
       const glm::dvec3& expected = reference.normalized[pixel];
       const bool shows = std::max({expected.r, expected.g, expected.b}) > kHalfStep;
-      out.holes += shows && frame.color(pixel) == Vec4{};
+      if (shows && frame.color(pixel) == Vec4{}) black.push_back(pixel);
     }
   }
+  if (unrounded && !black.empty()) {
+    const Frame exact = unrounded();
+    out.rounded_to_black = static_cast<std::size_t>(
+        std::ranges::count_if(black, [&](std::size_t pixel) { return exact.color(pixel) != Vec4{}; }));
+  }
+  out.holes = black.size() - out.rounded_to_black;
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,12 +64,18 @@ struct Comparison {
   // pixels, as a prefiltered edge does: there the two are different pictures, in whatever precision.
   std::size_t pixels_off_edges = 0;
   double psnr_off_edges = 0;  // dB
-  // Pixels inside the silhouette that the frame left black and without weight, where the reference is not as
-  // good as black: their rays and those of the eight pixels about them meet an opaque quad of the reference.
+  // Pixels inside the silhouette (their rays and those of the eight pixels about them meet an opaque quad of
+  // the reference), and of these the ones that the frame left black and without weight, where the reference
+  // is not as good as black: holes, which no splat covers, and dark pixels whose splats all rounded to
+  // nothing.
   std::size_t inside_pixels = 0;
   std::size_t holes = 0;
+  std::size_t rounded_to_black = 0;
 };
-Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference);
+// `unrounded` gives the frame as a frame buffer of floats holds it, and is asked only where there may be
+// holes. Without it every pixel left black is a hole.
+Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference,
+                   const std::function<Frame()>& unrounded = {});
 
 // "PSNR 40.1 dB over 1234 pixels", or "no pixel is covered".
 std::string describe_psnr(const Comparison& comparison);

@@ -59,6 +59,16 @@ TEST(ReferenceComparison, counts_holes_and_differences_on_the_surface_alone) {
   EXPECT_NEAR(c.psnr, -10 * std::log10(3 * 0.25 / 25), 1e-9);
 }
 
+TEST(ReferenceComparison, tells_what_rounded_to_black_from_holes) {
+  Frame frame = grey_frame(), unrounded = grey_frame();
+  for (const std::size_t pixel : {6 * 2 + 2, 6 * 2 + 3, 6 * 3 + 3}) frame.colors32[pixel] = {};
+  unrounded.colors32[6 * 3 + 3] = {};
+  const Comparison c = compare(frame, grey_square(), [&] { return unrounded; });
+  EXPECT_EQ(c.holes, 1u);
+  EXPECT_EQ(c.rounded_to_black, 2u);
+  EXPECT_EQ(compare(frame, grey_square()).holes, 3u);
+}
+
 // 24 x 24 pixels of grey; from column 12 on `step` further away.
 kernels::ScreenSpacePicture two_planes(double step) {
   kernels::ScreenSpacePicture picture;

@@ -123,8 +123,7 @@ Json statistics_json(const sim::Result& timing) {
 }
 
 // A figure that no file can hold, an infinite PSNR, is null.
-Json reference_json(const Frame& frame, const kernels::ScreenSpacePicture& reference) {
-  const Comparison c = compare(frame, reference);
+Json reference_json(const Comparison& c) {
   return {{"psnr_decibels", c.psnr},
           {"surface_pixels", c.surface_pixels},
           {"psnr_off_edges_decibels", c.psnr_off_edges},
@@ -132,7 +131,8 @@ Json reference_json(const Frame& frame, const kernels::ScreenSpacePicture& refer
           {"worst", c.worst},
           {"pixels_over_8", c.over_8},
           {"inside_pixels", c.inside_pixels},
-          {"holes", c.holes}};
+          {"holes", c.holes},
+          {"rounded_to_black", c.rounded_to_black}};
 }
 
 Json mesh_json(const traces::MeshCounts& mesh) {
@@ -332,6 +332,14 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   return run;
 }
 
+Comparison compare(const Frame& frame, const Trace& trace, const Machine& machine,
+                   const kernels::ScreenSpacePicture& reference) {
+  Machine exact = machine;
+  exact.numbers.frame = FrameFormat::float32;
+  return compare(frame, reference,
+                 [&] { return run_frame(trace, exact, Fidelity::functional).rendered.frame; });
+}
+
 Image picture_of(const Frame& frame) {
   Image image(static_cast<int>(frame.width), static_cast<int>(frame.height));
   for (std::size_t pixel = 0; pixel < image.pixels.size(); ++pixel) {
@@ -380,7 +388,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped, input.estimated);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
   if (input.volume) results["volume"] = volume_json(*input.volume);
-  if (run.reference) results["reference"] = reference_json(run.rendered.frame, *run.reference);
+  if (run.reference) results["reference"] = reference_json(run.reference->comparison);
   results["host"] = {{"seconds", run.host_seconds}};
   if (run.timing) {
     results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.timing_seconds;
@@ -398,10 +406,10 @@ OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& f
 namespace {
 
 void write_reference(const FrameRun& run, const std::filesystem::path& folder) {
-  const Image reference = picture_of(*run.reference);
+  const Image reference = picture_of(run.reference->picture);
   write_exr(reference, folder / "reference.exr");
   write_png(reference, folder / "reference.png");
-  write_png(difference_picture(run.rendered.frame, *run.reference), folder / "difference.png");
+  write_png(difference_picture(run.rendered.frame, run.reference->picture), folder / "difference.png");
 }
 
 std::vector<std::string> result_names(const Input& input, const FrameRun& run) {

@@ -14,6 +14,7 @@
 #include "sim/simulate.h"
 #include "studies/heat_maps.h"
 #include "studies/image_io.h"
+#include "studies/reference_comparison.h"
 #include "studies/study.h"
 #include "traces/recorder.h"
 #include "traces/volume_trace.h"
@@ -58,13 +59,19 @@ kernels::ScreenSpacePicture reference_of(const Opened& opened, kernels::ScreenMa
 Input make_input(Opened opened, const std::string& name, const Machine& machine,
                  const Progress& progress = {});
 
+// What the frame should be, and how far it is from that.
+struct AgainstReference {
+  kernels::ScreenSpacePicture picture;
+  Comparison comparison;
+};
+
 struct FrameRun {
   Rendered rendered;
-  std::optional<sim::Result> timing;                     // absent: functional
-  double host_seconds = 0;                               // function and timing
-  double timing_seconds = 0;                             // of these, for the timing
-  std::vector<HeatMap> heat_maps;                        // where they are asked for
-  std::optional<kernels::ScreenSpacePicture> reference;  // what the frame should be, where it is asked for
+  std::optional<sim::Result> timing;          // absent: functional
+  double host_seconds = 0;                    // function and timing
+  double timing_seconds = 0;                  // of these, for the timing
+  std::vector<HeatMap> heat_maps;             // where they are asked for
+  std::optional<AgainstReference> reference;  // where it is asked for
 };
 
 struct TimingOptions {
@@ -82,6 +89,11 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const Progress& progress = {}, const OnFrame& on_frame = {},
                    const TimingOptions& timing = {});
+
+// Compares the frame that `trace` left on `machine` with the reference, and draws it once more with a frame
+// buffer of floats where pixels that rounded to black have to be told from holes.
+Comparison compare(const Frame& frame, const Trace& trace, const Machine& machine,
+                   const kernels::ScreenSpacePicture& reference);
 
 // The picture with its alpha set to 1, and the depths.
 Image picture_of(const Frame& frame);

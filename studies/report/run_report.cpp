@@ -29,14 +29,14 @@ void add_picture(Report& report, const FrameRun& run) {
     report.pictures({{"frame", "as the frame buffer holds it: no gamma is applied", picture}});
     return;
   }
-  const Comparison c = compare(run.rendered.frame, *run.reference);
+  const Comparison& c = run.reference->comparison;
   std::string agreement = describe_psnr(c);
   if (c.surface_pixels > 0) agreement += fmt::format(", at worst {:.0f}/255", c.worst);
   if (c.pixels_off_edges > 0)
     agreement += fmt::format(", {:.1f} dB off edges, {} holes", c.psnr_off_edges, c.holes);
   report.comparisons({{{"frame", agreement, picture},
-                       picture_of(*run.reference),
-                       difference_picture(run.rendered.frame, *run.reference)}});
+                       picture_of(run.reference->picture),
+                       difference_picture(run.rendered.frame, run.reference->picture)}});
 }
 
 void add_times(Report& report, const sim::Result& timing) {

@@ -42,20 +42,22 @@ void reproduce_figure12(Findings& findings, const Progress& progress) {
     const Trace trace =
         traces::record(scene, machine.numbers, part(progress, done / all, (done + 1) / all)).trace;
     const FrameRun run = run_frame(trace, machine, Fidelity::functional);
-    const Comparison c = compare(run.rendered.frame, reference);
+    const Comparison c = compare(run.rendered.frame, trace, machine, reference);
     pictures.push_back({"fig12-" + model.name,
                         fmt::format("{} ({}), {} surfels", model.name, what, scene.surfels.size()),
                         picture_of(run.rendered.frame), picture_of(reference),
                         difference_picture(run.rendered.frame, reference)});
-    findings.say(
-        fmt::format("fig12 {:<11} {:<20} {:>7} surfels  {:>5.1f} dB  {:>5.1f} dB off edges  {:>2} holes\n",
-                    model.name, what, scene.surfels.size(), c.psnr, c.psnr_off_edges, c.holes));
+    findings.say(fmt::format(
+        "fig12 {:<11} {:<20} {:>7} surfels  {:>5.1f} dB  {:>5.1f} dB off edges  {:>2} holes  {:>3} "
+        "rounded to black\n",
+        model.name, what, scene.surfels.size(), c.psnr, c.psnr_off_edges, c.holes, c.rounded_to_black));
     list.push_back({{"model", model.name},
                     {"what", what},
                     {"surfels", scene.surfels.size()},
                     {"psnr_decibels", c.psnr},
                     {"psnr_off_edges_decibels", c.psnr_off_edges},
-                    {"holes", c.holes}});
+                    {"holes", c.holes},
+                    {"rounded_to_black", c.rounded_to_black}});
   }
   findings.report().heading("Fig. 12: models with textures of high frequency");
   findings.compare(pictures);
