@@ -16,15 +16,32 @@ constexpr std::array kSides = {100, 178, 316, 562, 1000};
 constexpr int kRunsOfSurfels = 300000;  // small frames run several times
 constexpr int kMostRuns = 5;
 
-double least_seconds(const Trace& trace, const Machine& machine, Fidelity fidelity, int runs) {
-  double least = 0;
+// Memory since a certain moment.
+class MemoryMeter {
+ public:
+  double peak_megabytes() const {
+    return is_measured_ ? (static_cast<double>(peak_memory()) - static_cast<double>(before_)) / 1e6 : 0;
+  }
+  void restart_peak() { is_measured_ = restart_peak_memory(); }
+
+ private:
+  bool is_measured_ = restart_peak_memory();
+  std::size_t before_ = peak_memory();
+};
+
+FrameCost cost_of(const Trace& trace, const Machine& machine, Fidelity fidelity, int runs,
+                  MemoryMeter& memory) {
+  memory.restart_peak();
+  FrameCost cost;
   for (int i = 0; i < runs; ++i) {
     const double seconds = run_frame(trace, machine, fidelity).host_seconds;
-    least = i == 0 ? seconds : std::min(least, seconds);
+    cost.seconds = i == 0 ? seconds : std::min(cost.seconds, seconds);
   }
-  return least;
+  cost.megabytes = memory.peak_megabytes();
+  return cost;
 }
 
+constexpr int kWarmUpSide = 64;     // of a frame before: it touches the code and the threads' buffers
 constexpr double kPaperSide = 256;  // surfels; of the plane that the default camera looks at
 
 // The paper's plane in more or fewer surfels, with the camera as much further away: the same picture in more
@@ -44,33 +61,36 @@ GrowthRow row_of(int side, const Machine& machine) {
   scene.camera.near *= scale;
   scene.camera.far *= scale;
   const int surfels = side * side;
-  const bool is_measured = restart_peak_memory();
-  const std::size_t before = peak_memory();
+  MemoryMeter memory;
   const Trace trace = traces::record(scene, machine.numbers).trace;
   const int runs = std::clamp(kRunsOfSurfels / surfels, 1, kMostRuns);
   GrowthRow row;
   row.surfels = surfels;
-  row.functional_seconds = least_seconds(trace, machine, Fidelity::functional, runs);
-  row.sampled_seconds = least_seconds(trace, machine, Fidelity::sampled, runs);
-  row.cycle_seconds = least_seconds(trace, machine, Fidelity::cycle, runs);
-  if (is_measured) row.megabytes = static_cast<double>(peak_memory() - before) / 1e6;
+  row.trace_megabytes = memory.peak_megabytes();
+  row.functional = cost_of(trace, machine, Fidelity::functional, runs, memory);
+  row.sampled = cost_of(trace, machine, Fidelity::sampled, runs, memory);
+  row.cycle = cost_of(trace, machine, Fidelity::cycle, runs, memory);
   return row;
 }
 
 struct Measure {
   std::string_view name;
-  double GrowthRow::*value;
+  double (*value)(const GrowthRow& row);
 };
-constexpr Measure kMeasures[] = {{"functional, s", &GrowthRow::functional_seconds},
-                                 {"sampled, s", &GrowthRow::sampled_seconds},
-                                 {"cycle, s", &GrowthRow::cycle_seconds},
-                                 {"memory, MB", &GrowthRow::megabytes}};
+constexpr Measure kMeasures[] = {
+    {"functional, s", [](const GrowthRow& row) { return row.functional.seconds; }},
+    {"sampled, s", [](const GrowthRow& row) { return row.sampled.seconds; }},
+    {"cycle, s", [](const GrowthRow& row) { return row.cycle.seconds; }},
+    {"trace, MB", [](const GrowthRow& row) { return row.trace_megabytes; }},
+    {"functional, MB", [](const GrowthRow& row) { return row.functional.megabytes; }},
+    {"sampled, MB", [](const GrowthRow& row) { return row.sampled.megabytes; }},
+    {"cycle, MB", [](const GrowthRow& row) { return row.cycle.megabytes; }}};
 
 Plot::Series series_of(const std::vector<GrowthRow>& rows, const Measure& measure) {
   Plot::Series series{.name = std::string(measure.name), .x = {}, .y = {}};
   for (const GrowthRow& row : rows) {
     series.x.push_back(row.surfels);
-    series.y.push_back(row.*measure.value);
+    series.y.push_back(measure.value(row));
   }
   return series;
 }
@@ -94,6 +114,7 @@ std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& p
   const Machine machine = machine::load("geforce4-ti4400");
   double all = 0, done = 0;
   for (const int side : sides) all += side * side;
+  row_of(kWarmUpSide, machine);
   std::vector<GrowthRow> rows;
   for (const int side : sides) {
     rows.push_back(row_of(side, machine));

@@ -7,14 +7,18 @@
 
 namespace splatscope::studies {
 
-// What a frame of so many surfels costs the host. Four pixels a surfel, as in Table 1.
+// Of one fidelity.
+struct FrameCost {
+  double seconds = 0;    // the least of some runs
+  double megabytes = 0;  // in memory at most, the trace included; 0: the system does not tell
+};
+
+// What a frame of so many surfels costs the host. Four pixels a surfel, as in Table 1. Memory is that beyond
+// what the process held before.
 struct GrowthRow {
   int surfels = 0;
-  double functional_seconds = 0;  // each the least of some runs
-  double sampled_seconds = 0;
-  double cycle_seconds = 0;
-  double megabytes =
-      0;  // in memory at most, beyond what the process held before; 0: the system does not tell
+  double trace_megabytes = 0;  // while it is recorded
+  FrameCost functional, sampled, cycle;
 };
 
 // Square planes of `sides` surfels along an edge.
