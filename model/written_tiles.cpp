@@ -1,6 +1,6 @@
 #include "model/written_tiles.h"
 
-#include <cstring>
+#include <bit>
 
 namespace splatscope {
 namespace {
@@ -25,40 +25,28 @@ constexpr TileMasks make_masks() {
 }
 constexpr TileMasks kMasks = make_masks();
 
-// Whether the first kSpan of four tiles in a row are written, in each of kSpan rows.
-bool all_written(const std::uint8_t* tiles, std::size_t stride) {
-  std::uint32_t all = ~0u;
-  for (std::size_t row = 0; row < kSpan; ++row) {
-    std::uint32_t four;
-    std::memcpy(&four, tiles + row * stride, sizeof four);
-    all &= four;
-  }
-  return (all & 0x010101u) == 0x010101u;
-}
-
 }  // namespace
 
 WrittenTiles::WrittenTiles(std::uint32_t width, std::uint32_t height)
     : across_((width + kFrameTileEdge - 1) / kFrameTileEdge),
-      stride_(across_ + kSpan),
-      written_(stride_ * ((height + kFrameTileEdge - 1) / kFrameTileEdge + kSpan), 0) {}
+      written_(std::size_t{across_} * ((height + kFrameTileEdge - 1) / kFrameTileEdge), 0) {}
 
 void WrittenTiles::note(std::span<const raster::Window> windows, std::uint32_t triangle,
                         std::vector<TileWritten>& out) {
   for (const raster::Window& window : windows) {
-    const auto x = static_cast<std::size_t>(window.x), y = static_cast<std::size_t>(window.y);
-    std::uint8_t* tiles = &written_[y / kFrameTileEdge * stride_ + x / kFrameTileEdge];
-    if (all_written(tiles, stride_)) continue;  // nearly always
-    for (std::size_t row = 0; row < kSpan; ++row) {
-      for (std::size_t column = 0; column < kSpan; ++column) {
-        std::uint8_t& written = tiles[row * stride_ + column];
-        const std::uint64_t in_tile =
-            kMasks.columns[x % kFrameTileEdge][column] & kMasks.rows[y % kFrameTileEdge][row];
-        if (written != 0 || (window.passed & in_tile) == 0) continue;
-        written = 1;
-        out.push_back({triangle, static_cast<std::uint32_t>((y / kFrameTileEdge + row) * across_ +
-                                                            x / kFrameTileEdge + column)});
-      }
+    const auto x = static_cast<std::uint32_t>(window.x), y = static_cast<std::uint32_t>(window.y);
+    const std::uint32_t left = x % kFrameTileEdge, top = y % kFrameTileEdge;
+    for (std::uint64_t rest = window.passed; rest != 0;) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      const std::uint32_t column =
+                              (left + static_cast<std::uint32_t>(raster::Window::x_of(bit))) / kFrameTileEdge,
+                          row =
+                              (top + static_cast<std::uint32_t>(raster::Window::y_of(bit))) / kFrameTileEdge;
+      rest &= ~(kMasks.columns[left][column] & kMasks.rows[top][row]);
+      const std::uint32_t tile = (y / kFrameTileEdge + row) * across_ + x / kFrameTileEdge + column;
+      if (written_[tile] != 0) continue;
+      written_[tile] = 1;
+      out.push_back({triangle, tile});
     }
   }
 }

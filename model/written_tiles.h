@@ -19,7 +19,6 @@ class WrittenTiles {
 
  private:
   std::uint32_t across_;
-  std::size_t stride_;  // of the rows of `written_`: with room for a window at the frame's edge
   std::vector<std::uint8_t> written_;  // 1 where written
 };
 

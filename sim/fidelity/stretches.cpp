@@ -61,11 +61,7 @@ std::vector<Clocks> Stretches::of(const DrawJob& job) {
 }
 
 Stretches::Sums Stretches::sums_of(std::span<const TriangleWork> triangles) const {
-  const auto tiles_per_clock = static_cast<std::uint32_t>(machine_.raster.tiles_per_clock);
-  const auto quads_per_clock = static_cast<std::uint32_t>(machine_.pixel.quads_per_clock);
-  const auto clocks = [](std::uint32_t items, std::uint32_t a_clock) {
-    return items / a_clock + (items % a_clock != 0);
-  };
+  const ClocksOf tile_clocks(machine_.raster.tiles_per_clock), quad_clocks(machine_.pixel.quads_per_clock);
   Sums sums;
   sums.triangles = triangles.size();
   for (const TriangleWork& triangle : triangles) {
@@ -73,8 +69,7 @@ Stretches::Sums Stretches::sums_of(std::span<const TriangleWork> triangles) cons
     if (triangle.pieces == 0) continue;
     sums.pieces += triangle.pieces;
     ++sums.in_frame;
-    sums.raster_clocks += std::max(
-        {1U, clocks(triangle.tile_count, tiles_per_clock), clocks(triangle.quad_count, quads_per_clock)});
+    sums.raster_clocks += std::max({1U, tile_clocks(triangle.tile_count), quad_clocks(triangle.quad_count)});
     sums.quads += triangle.quad_count;
     sums.quads_passed += triangle.quads_passed;
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/fidelity/stretches.h"
 #include "sim/testing/random_trace.h"
 
 namespace splatscope::sim {
@@ -35,6 +36,16 @@ INSTANTIATE_TEST_SUITE_P(Units, Bottlenecks,
                                            Bottleneck{"setup.clocks_per_triangle=64", "setup"},
                                            Bottleneck{"primitive.clocks_per_triangle=64", "primitive"},
                                            Bottleneck{"host.command_nanoseconds=1e6", "host"}));
+
+TEST(Throughput, ClocksAreQuotientsRoundedUp) {
+  constexpr std::uint32_t kMost = 1U << 26;
+  for (std::uint32_t a_clock = 1; a_clock <= 16; ++a_clock) {
+    const ClocksOf clocks(static_cast<int>(a_clock));
+    for (std::uint32_t i = 0; i < 1000; ++i)
+      for (const std::uint32_t items : {i, kMost - i, (kMost / 2 / a_clock + i) * a_clock})
+        ASSERT_EQ((items + a_clock - 1) / a_clock, clocks(items)) << items << " at " << a_clock;
+  }
+}
 
 TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
   RandomTrace made = testing::simple_trace(10);
