@@ -72,12 +72,12 @@ void add_seeds(const Trace& trace, const Machine& machine, FidelityRow& row) {
 }
 
 // Utilisations become errors.
-void compare_with(const FidelityRow& truth, FidelityRow& row) {
+void compare_with(const FidelityRow& referee, FidelityRow& row) {
   if (row.cycles == 0) return;
-  const auto cycles = static_cast<double>(truth.cycles);
+  const auto cycles = static_cast<double>(referee.cycles);
   row.error = static_cast<double>(row.cycles) / cycles - 1;
   for (FidelityRow::Seed& seed : row.seeds) seed.error = seed.cycles / cycles - 1;
-  for (std::size_t i = 0; i < row.units.size(); ++i) row.units[i].error -= truth.units[i].error;
+  for (std::size_t i = 0; i < row.units.size(); ++i) row.units[i].error -= referee.units[i].error;
 }
 
 // Host seconds of the timing alone.
@@ -132,8 +132,8 @@ std::vector<FidelityRow> all_table1_rows(const Progress& progress) {
   double done = 0;
   for (const std::string_view ready : kTable1) {
     const double next = done + 1.0 / std::size(kTable1);
-    const auto frame = fidelity_rows(traces::load_scene(ready), kFidelityRepetitions, Fidelity::referee,
-                                     part(progress, done, next));
+    const auto frame =
+        fidelity_rows(traces::load_scene(ready), kFidelityRepetitions, part(progress, done, next));
     rows.insert(rows.end(), frame.begin(), frame.end());
     done = next;
   }
@@ -151,8 +151,7 @@ std::vector<FidelityRow> all_table2_rows(const Progress& progress) {
     for (const auto& published : model.published) {
       scene.frame.width = scene.frame.height = published.resolution;
       const double next = done + static_cast<double>(model.points) / static_cast<double>(points);
-      const auto frame =
-          fidelity_rows(scene, kFidelityRepetitions, Fidelity::cycle, part(progress, done, next));
+      const auto frame = fidelity_rows(scene, kFidelityRepetitions, part(progress, done, next));
       rows.insert(rows.end(), frame.begin(), frame.end());
       done = next;
     }
@@ -162,34 +161,33 @@ std::vector<FidelityRow> all_table2_rows(const Progress& progress) {
 
 }  // namespace
 
-std::vector<FidelityRow> fidelity_rows(const traces::Scene& scene, int repetitions, Fidelity truth,
+std::vector<FidelityRow> fidelity_rows(const traces::Scene& scene, int repetitions,
                                        const Progress& progress) {
-  const auto fidelities = std::span(kAll).first(truth == Fidelity::referee ? 5 : 4);
   std::vector<FidelityRow> rows;
   for (const std::string_view machine_name : kMachines) {
     const Machine machine = machine::load(machine_name);
     const Trace trace = traces::record(scene, machine.numbers).trace;
     const std::size_t first = rows.size();
-    for (const Fidelity fidelity : fidelities) {
+    for (const Fidelity fidelity : kAll) {
       rows.push_back(row_of(scene, machine_name, fidelity, time_run(trace, machine, fidelity, repetitions)));
       if (fidelity == Fidelity::sampled) add_seeds(trace, machine, rows.back());
       if (progress)
         progress(static_cast<double>(rows.size()) /
-                 static_cast<double>(std::size(kMachines) * fidelities.size()));
+                 static_cast<double>(std::size(kMachines) * std::size(kAll)));
     }
-    const FidelityRow last = rows.back();
-    for (std::size_t i = first; i < rows.size(); ++i) compare_with(last, rows[i]);
+    const FidelityRow referee = rows.back();
+    for (std::size_t i = first; i < rows.size(); ++i) compare_with(referee, rows[i]);
   }
   return rows;
 }
 
 void study_fidelity(Findings& findings, const Progress& progress) {
-  const std::vector<FidelityRow> table1 = all_table1_rows(part(progress, 0, 0.4));
+  const std::vector<FidelityRow> table1 = all_table1_rows(part(progress, 0, 0.2));
   findings.say(fidelity_text("Table 1", table1));
-  const std::vector<FidelityRow> table2 = all_table2_rows(part(progress, 0.4, 0.9));
+  const std::vector<FidelityRow> table2 = all_table2_rows(part(progress, 0.2, 0.95));
   findings.say(fidelity_text("Table 2", table2));
   add_fidelity_report(findings, table1, table2);
-  study_saving(findings, part(progress, 0.9, 1));
+  study_saving(findings, part(progress, 0.95, 1));
 }
 
 }  // namespace splatscope::studies

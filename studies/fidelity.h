@@ -8,8 +8,7 @@
 
 namespace splatscope::studies {
 
-// One fidelity on one scene and machine, against the truth: the referee on the same, or `cycle` where the
-// referee takes too long (they agree in every event, which tests hold).
+// One fidelity on one scene and machine, against the referee on the same.
 struct FidelityRow {
   std::string scene;
   int resolution = 0;  // pixels: width and height
@@ -29,17 +28,17 @@ struct FidelityRow {
     double cycles = 0;
     double plus_minus = 0;
     double error = 0;
-    bool covers() const;  // whether the truth is in the interval
+    bool covers() const;  // whether the referee's cycles are in the interval
   };
   std::vector<Seed> seeds;  // of fidelity sampled: by --seed 0, 1, ..., kSampleSeeds - 1
 };
 constexpr std::uint64_t kSampleSeeds = 10;
 constexpr int kFidelityRepetitions = 3;  // of the study
 
-// All fidelities up to `truth`, which is the last of each machine, on one scene and both machines. The host's
-// seconds are the least of `repetitions` runs, but for the referee, which runs once.
+// All fidelities on one scene and both machines. The host's seconds are the least of `repetitions` runs, but
+// for the referee, which runs once.
 std::vector<FidelityRow> fidelity_rows(const traces::Scene& scene, int repetitions,
-                                       Fidelity truth = Fidelity::referee, const Progress& progress = {});
+                                       const Progress& progress = {});
 
 // What is said of the frames of a table: a line for each fidelity.
 std::string fidelity_text(std::string_view table, std::span<const FidelityRow> rows);
@@ -47,7 +46,7 @@ std::string fidelity_text(std::string_view table, std::span<const FidelityRow> r
 void add_fidelity_report(Findings& findings, std::span<const FidelityRow> table1,
                          std::span<const FidelityRow> table2);
 
-// The study: the frames of Table 1, with the referee, and those of Table 2.
+// The study: the frames of Table 1 and those of Table 2.
 void study_fidelity(Findings& findings, const Progress& progress);
 
 }  // namespace splatscope::studies

@@ -116,8 +116,8 @@ void add_frames(Report& report, std::span<const FidelityRow> rows) {
   }
   report.table(
       fmt::format("Every frame. Seeds: the worst error of sampled by seeds 0 to {}, and how often its "
-                  "interval covers the truth. Utilisation: the worst unit's, in percentage points of "
-                  "the truth's.",
+                  "interval covers the referee's cycles. Utilisation: the worst unit's, in percentage points "
+                  "of the referee's.",
                   kSampleSeeds - 1),
       {{"scene"},
        {"size", number},
@@ -226,8 +226,7 @@ bool FidelityRow::Seed::covers() const {
 
 std::string fidelity_text(std::string_view table, std::span<const FidelityRow> rows) {
   const std::vector<Summary> summaries = summaries_of(rows);
-  std::string text =
-      fmt::format("{}, {} frames against {}\n", table, summaries[0].frames, name(summaries.back().fidelity));
+  std::string text = fmt::format("{}, {} frames against the referee\n", table, summaries[0].frames);
   text += fmt::format("{:<11} {:>11} {:>9} {:>12} {:>11} {:>12} {:>8}\n", "fidelity", "s a frame",
                       "Mcycles/s", "worst error", "mean error", "utilisation", "peak MB");
   for (const Summary& s : summaries) {
@@ -236,9 +235,8 @@ std::string fidelity_text(std::string_view table, std::span<const FidelityRow> r
                         cells[3], cells[4], cells[5], cells[6]);
     if (s.fidelity == Fidelity::sampled)
       text += fmt::format(
-          "            seeds 0 to {}: the interval, +- {:.2f} % on average and {:.2f} % at most, covers {} "
-          "of "
-          "{}\n",
+          "            seeds 0 to {}: the interval, +- {:.2f} % on average and {:.2f} % at most, "
+          "covers {} of {}\n",
           kSampleSeeds - 1, 100 * s.mean_width, 100 * s.widest, s.covered, s.runs);
   }
   return text;
@@ -253,11 +251,8 @@ void add_fidelity_report(Findings& findings, std::span<const FidelityRow> table1
   report.paragraph(fmt::format(
       "All frames of Table 1 and of Table 2 (its stand-ins with the published number of points, at both "
       "resolutions) on both machines. Host seconds hold function and timing, and are the least of {} runs "
-      "(the "
-      "referee's: of one). Errors of Table 1 are against the referee; the frames of Table 2 are too large "
-      "for "
-      "it, and theirs are against cycle, which agrees with the referee in every event. The errors of sampled "
-      "are those of all seeds from 0 to {}. Memory is that of the whole process, the trace included.",
+      "(the referee's: of one). Errors are against the referee; those of sampled are of all seeds from 0 to "
+      "{}. Memory is that of the whole process, the trace included.",
       kFidelityRepetitions, kSampleSeeds - 1));
   const std::string utilisation = " Utilisation: the worst of any unit, in percentage points.";
   add_summary(report, "Over all frames of Table 1." + utilisation, summaries_of(table1));
