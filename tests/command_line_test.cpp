@@ -245,6 +245,25 @@ TEST(CommandLine, ATimelineMayLieInANewFolder) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
 }
 
+// As /dev/stdout is where the shell made a file of it: to write there by a new file would put it in the place
+// of the link.
+TEST(CommandLine, AStandardStreamIsNoPlaceForAFile) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  for (const char* stream : {"/proc/self/fd/1", "/proc/self/fd/2"}) {
+    const auto link = folder.path() / "stream";
+    std::filesystem::create_symlink(stream, link);
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"record", "small.toml", "-o", "stream"},
+          {"run", "small.toml", "--counters", "stream", "--out", "o"}}) {
+      const Outcome outcome = run_program(command, folder.path());
+      expect_refused(outcome, "stream: is standard input, output or error of this run");
+      EXPECT_TRUE(std::filesystem::is_symlink(link)) << command[0];
+    }
+    std::filesystem::remove(link);
+  }
+}
+
 // A folder holds one run: pictures that an earlier one wrote and this one does not go away, and nothing else.
 TEST(CommandLine, ALaterRunTakesTheFolderOver) {
   const ScratchFolder folder;

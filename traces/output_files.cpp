@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
@@ -25,6 +27,13 @@ bool same_place(const fs::path& a, const fs::path& b) {
   if (fs::exists(a, error) && fs::exists(b, error)) return fs::equivalent(a, b, error);
   const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
   return !error && whole_a == fs::weakly_canonical(fs::absolute(b, error), error) && !error;
+}
+
+// By whatever link: /dev/stdout would be renamed over, for everyone, where the shell made a file of it.
+bool is_standard_stream(const fs::path& path) {
+  return std::ranges::any_of(std::array{STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}, [&](int stream) {
+    return same_place(path, fmt::format("/proc/self/fd/{}", stream));
+  });
 }
 
 }  // namespace
@@ -51,6 +60,9 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
     throw UserError(path_.string(), 0, "is a folder, expected a place for a file");
   if (fs::exists(path_, error) && !fs::is_regular_file(path_, error))  // /dev/null must stay what it is
     throw UserError(path_.string(), 0, "is no ordinary file, expected a place for one");
+  if (is_standard_stream(path_))
+    throw UserError(path_.string(), 0,
+                    "is standard input, output or error of this run, expected a file of its own");
   errno = 0;
   if (std::ofstream(temporary_, std::ios::binary)) return;
   if (errno == ENOSPC || errno == EDQUOT) fail_for_disk(path_);
