@@ -425,9 +425,11 @@ std::vector<std::string> result_names(const Input& input, const FrameRun& run) {
 
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder) {
-  const nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
+  nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
+  const std::vector<std::string> files = result_names(input, run);
+  results["files"] = files;
   const Image picture = picture_of(run.rendered.frame);
-  remove_other_results(folder, result_names(input, run));
+  remove_earlier_results(folder, files);
   // Side by side: to compress them takes longer than many a frame.
   oneapi::tbb::parallel_invoke(
       [&] { write_exr(picture, folder / "frame.exr"); }, [&] { write_png(picture, folder / "frame.png"); },

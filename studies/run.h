@@ -113,8 +113,8 @@ OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& f
 
 // Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html into `folder`,
 // which exists; where the run has a reference also reference.exr, reference.png and difference.png, and into
-// the results how far the last frame is from it; its heat maps as NAME.exr. What an earlier run wrote there
-// under such names, and this one does not, goes away.
+// the results how far the last frame is from it; its heat maps as NAME.exr. What an earlier run wrote there,
+// and this one does not, goes away.
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
                const std::filesystem::path& folder);
 

@@ -16,8 +16,8 @@ std::string picture_name(std::size_t number, std::size_t frames);
 void expect_apart_from_results(const std::vector<traces::NamedFile>& files,
                                const std::filesystem::path& folder);
 
-// Removes the results of an earlier run in `folder` but those of the names in `kept`, so that the folder
-// holds one run. What has no name that a run gives its results stays.
-void remove_other_results(const std::filesystem::path& folder, const std::vector<std::string>& kept);
+// Removes what an earlier run wrote into `folder`, by the `files` of its results.json, but for those of the
+// names in `kept`, so that the folder holds one run. What no run has listed stays, whatever its name.
+void remove_earlier_results(const std::filesystem::path& folder, const std::vector<std::string>& kept);
 
 }  // namespace splatscope::studies

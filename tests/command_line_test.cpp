@@ -292,10 +292,17 @@ TEST(CommandLine, ALaterRunTakesTheFolderOver) {
       0);
   EXPECT_EQ(names(), with({"cycles_per_tile.exr", "depth_fails.exr", "difference.png", "overdraw.exr",
                            "reference.exr", "reference.png", "texel_fetches.exr"}));
-  const std::vector<std::string> own{"frame-0.png", "frame-new.png", "overdraw.png"};
+  ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
+  EXPECT_EQ(names(), with({}));
+  const std::vector<std::string> own{"frame-000.png", "frame-new.png", "overdraw.exr", "reference.png"};
   for (const std::string& name : own) folder.file("o/" + name, "the user's");
   ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
-  EXPECT_EQ(names(), with(own));
+  EXPECT_EQ(names(), with(own)) << "that no run wrote";
+  for (const char* other : {"{\"files\": [\"../small.toml\", \"small.toml\", 7]}", "[]", "no JSON"}) {
+    folder.file("o/results.json", other);
+    ASSERT_EQ(run_program({"run", "../small.toml", "--out", "."}, folder.path() / "o").status, 0) << other;
+    EXPECT_EQ(names(), with(own)) << other;
+  }
 }
 
 TEST(CommandLine, AReferenceThatCoversNothingIsSaidToBeNone) {
