@@ -24,7 +24,7 @@ struct Options {
   std::string input;
   std::string machine = "geforce4-ti4400";
   std::string fidelity = "cycle";
-  std::optional<std::uint64_t> seed;
+  std::uint64_t seed = 1;
   std::vector<std::string> settings;
   std::vector<std::string> programs;
   std::string out = "out";
@@ -101,17 +101,14 @@ void expect_apart(const Options& options) {
   studies::expect_apart_from_results(files, options.out);
 }
 
-// That the fidelity has a use for the options that are given.
+// That the fidelity can write the files that are asked for. A seed may be given to any: one that takes no
+// samples gives the same result by every seed.
 void expect_used(const Options& options, studies::Fidelity fidelity) {
   const studies::ObserveOptions& observe = options.observe;
   if (!(observe.timeline + observe.pipeline + observe.counters).empty() && !simulates_cycles(fidelity)) {
     throw UserError(
         "--fidelity", 0,
         fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
-  }
-  if (options.seed && fidelity != studies::Fidelity::sampled) {
-    throw UserError("--seed", 0,
-                    fmt::format("{} takes no samples, expected --fidelity sampled", options.fidelity));
   }
 }
 
@@ -145,11 +142,10 @@ void run(const Options& options, bool quiet) {
     if (heat_maps->observer()) watching.push_back(heat_maps->observer());
   }
   ProgressBar running("running", quiet);
-  studies::FrameRun result = studies::run_frame(input.trace, machine, fidelity, running.callback(),
-                                                studies::earlier_frames_writer(input.trace, options.out),
-                                                {.seed = options.seed.value_or(1),
-                                                 .observers = watching,
-                                                 .heat_maps = heat_maps ? &*heat_maps : nullptr});
+  studies::FrameRun result = studies::run_frame(
+      input.trace, machine, fidelity, running.callback(),
+      studies::earlier_frames_writer(input.trace, options.out),
+      {.seed = options.seed, .observers = watching, .heat_maps = heat_maps ? &*heat_maps : nullptr});
   running.clear();
   if (reference) {
     const studies::Comparison comparison =
@@ -205,7 +201,7 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
       ->allow_extra_args(false);
   command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
-      ->default_str("1");
+      ->capture_default_str();
   command->add_option("--out", options->out, "folder for the results; those of an earlier run in it go away")
       ->capture_default_str();
   command

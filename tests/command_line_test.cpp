@@ -338,6 +338,17 @@ TEST(CommandLine, PicturesWithoutTheirLibraryAreAnError) {
   EXPECT_EQ(broken.error.find("beside the program"), std::string::npos) << broken.error;
 }
 
+// So that a script may give all fidelities the same options.
+TEST(CommandLine, EveryFidelityTakesASeed) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  for (const char* fidelity : {"functional", "throughput", "sampled", "cycle"}) {
+    const Outcome outcome = run_program(
+        {"run", "small.toml", "--seed", "7", "--fidelity", fidelity, "--out", "o"}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+  }
+}
+
 // What an option is about must be there, and of values a key has one.
 TEST(CommandLine, OptionsWithoutAnEffectAreRefused) {
   const ScratchFolder folder;
@@ -352,7 +363,6 @@ TEST(CommandLine, OptionsWithoutAnEffectAreRefused) {
   refused("run", {"--timeline-window", "1:2"}, "--timeline-window requires --timeline");
   refused("run", {"--pipeline-window", "1:2"}, "--pipeline-window requires --pipeline");
   refused("run", {"--counters-every", "10"}, "--counters-every requires --counters");
-  refused("run", {"--seed", "1"}, "--seed: cycle takes no samples, expected --fidelity sampled");
   refused("sweep", {"--sweep", "vertex.units=1", "--sweep", "vertex.units=2"}, "vertex.units is given twice");
   refused("sweep", {"--sweep", "vertex.units=1", "--set", "vertex.units=2"}, "vertex.units is swept");
   refused("sweep", {"--sweep", "vertex.units=99"}, "--sweep: vertex.units is out of range (99)");
