@@ -200,7 +200,7 @@ Opened open_input(const std::string& scene_or_trace, const Progress& progress) {
     return traces::read_trace(scene_or_trace);
   const traces::SceneText text = traces::read_scene_text(scene_or_trace);
   if (traces::has_volume(text)) return traces::parse_volume_scene(text.text, text.file);
-  return traces::load_scene(scene_or_trace, progress);
+  return traces::load_scene(text, progress);
 }
 
 void expect_scene(const Opened& opened, const std::string& name) {

@@ -264,6 +264,18 @@ TEST(CommandLine, AStandardStreamIsNoPlaceForAFile) {
   }
 }
 
+// It is read once.
+TEST(CommandLine, ASceneMayComeThroughAPipe) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const std::string command =
+      fmt::format("cd {} && cat small.toml | {} run /dev/stdin --fidelity functional --out o >said",
+                  folder.path().string(), SPLATSCOPE_PROGRAM);
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const auto results = nlohmann::json::parse(text_of(folder.path() / "o/results.json"));
+  EXPECT_EQ(results["surfels"]["drawn"], 16 * 16);
+}
+
 // A folder holds one run: pictures that an earlier one wrote and this one does not go away, and nothing else.
 TEST(CommandLine, ALaterRunTakesTheFolderOver) {
   const ScratchFolder folder;

@@ -7,7 +7,6 @@
 #include "model/error.h"
 #include "traces/gamma.h"
 #include "traces/scene_settings.h"
-#include "traces/scene_text.h"
 #include "traces/surfels.h"
 
 namespace splatscope::traces {
@@ -53,7 +52,10 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
 }
 
 Scene load_scene(const std::filesystem::path& name_or_path, const std::function<void(double)>& progress) {
-  const SceneText text = read_scene_text(name_or_path);
+  return load_scene(read_scene_text(name_or_path), progress);
+}
+
+Scene load_scene(const SceneText& text, const std::function<void(double)>& progress) {
   Scene scene = parse_scene(text.text, text.file, progress);
   if (scene.surfels.empty() && scene.skipped.total() > 0)
     throw UserError(text.file.string(), 0,

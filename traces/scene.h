@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "traces/models/mesh.h"
+#include "traces/scene_text.h"
 
 // What a user wants drawn: surfels, a camera, and how to splat. It lives on the host; the recorder turns it
 // into a trace, which knows no surfel.
@@ -123,6 +124,8 @@ struct Scene {
 // scene file. `name_or_path` may also be the name of a ready scene ("checkerboard-no-ewa") where no such file
 // exists. Throws UserError: file missing, TOML wrong, key unknown, value of the wrong type or out of range.
 Scene load_scene(const std::filesystem::path& name_or_path, const std::function<void(double)>& progress = {});
+// The same of a text that was read: a pipe gives it but once.
+Scene load_scene(const SceneText& text, const std::function<void(double)>& progress = {});
 
 // The same from text; `file` is for messages and for finding the surfel file.
 Scene parse_scene(std::string_view text, const std::filesystem::path& file,
