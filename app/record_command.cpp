@@ -2,12 +2,14 @@
 
 #include <iostream>
 #include <memory>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "model/error.h"
 #include "model/machine/machine.h"
 #include "studies/run.h"
+#include "studies/run_files.h"
 #include "traces/output_files.h"
 #include "traces/trace_file.h"
 
@@ -21,7 +23,9 @@ struct Options {
 };
 
 void record(const Options& options, bool quiet) {
-  traces::expect_apart({{"-o", options.out}}, {{"SCENE", options.scene}, {"--machine", options.machine}});
+  std::vector<traces::NamedFile> inputs = studies::files_of_input("SCENE", options.scene);
+  inputs.push_back({"--machine", options.machine});
+  traces::expect_apart({{"-o", options.out}}, inputs);
   const Machine machine = machine::load(options.machine);
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.scene, loading.callback());

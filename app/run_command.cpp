@@ -87,7 +87,8 @@ bool simulates_cycles(studies::Fidelity fidelity) {
 
 // That no file of the command line is written over another.
 void expect_apart(const Options& options) {
-  std::vector<traces::NamedFile> files{{"INPUT", options.input}, {"--machine", options.machine}};
+  std::vector<traces::NamedFile> files = studies::files_of_input("INPUT", options.input);
+  files.push_back({"--machine", options.machine});
   for (const std::string& program : options.programs)
     files.push_back({"--program", program.substr(program.find('=') + 1)});
   const studies::ObserveOptions& observe = options.observe;

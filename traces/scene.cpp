@@ -64,6 +64,15 @@ Scene load_scene(const SceneText& text, const std::function<void(double)>& progr
   return scene;
 }
 
+std::vector<std::filesystem::path> files_named(const SceneText& scene) {
+  const SceneSettings settings = parse_settings(scene.text, scene.file.string());
+  std::vector<std::filesystem::path> files;
+  for (const std::string* name :
+       {&settings.surfels.file, &settings.volume.file, &settings.volume.positions, &settings.volume.samples})
+    if (!name->empty()) files.push_back(scene.file.parent_path() / *name);
+  return files;
+}
+
 std::string describe(const SkipCounts& skipped) {
   if (skipped.total() == 0) return "none left out";
   return fmt::format("{} left out ({})", skipped.total(),

@@ -131,6 +131,10 @@ Scene load_scene(const SceneText& text, const std::function<void(double)>& progr
 Scene parse_scene(std::string_view text, const std::filesystem::path& file,
                   const std::function<void(double)>& progress = {});
 
+// The files that a scene names: of its surfels, or of its volume. Throws UserError as parse_scene does for
+// the text.
+std::vector<std::filesystem::path> files_named(const SceneText& scene);
+
 // "2 left out (1 not finite, 1 of radius 0)", or "none left out".
 std::string describe(const SkipCounts& skipped);
 
