@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "model/error.h"
 #include "traces/output_files.h"
 #include "traces/point_file.h"
 #include "traces/surfels.h"
@@ -30,6 +31,7 @@ std::string refuse_nan(const std::string& text) {
 }
 
 void sample(const Options& options, bool quiet) {
+  if (options.source.file.empty()) throw UserError("MESH", 0, "\"\" names no file, expected a mesh");
   traces::expect_apart({{"-o", options.out}}, {{"MESH", options.source.file}});
   { const traces::OutputFile writable(options.out); }  // before the work, not after it
   traces::SampledModel sampled;

@@ -350,6 +350,10 @@ TEST(CommandLine, PicturesWithoutTheirLibraryAreAnError) {
   EXPECT_EQ(broken.error.find("beside the program"), std::string::npos) << broken.error;
 }
 
+TEST(CommandLine, AMeshWithoutANameIsRefused) {
+  expect_refused(run_program({"sample", "", "-o", "s.ply"}), "MESH: \"\" names no file");
+}
+
 // So that a script may give all fidelities the same options.
 TEST(CommandLine, EveryFidelityTakesASeed) {
   const ScratchFolder folder;

@@ -70,6 +70,7 @@ TEST(BadInputs, CommandLines) {
       {"record", "tiny.toml", "-o", "/dev/null"},
       {"record", "tiny.toml", "-o", "x.trace", "--machine", "voodoo"},
       {"sample", "tiny.toml", "-o", "s.ply"},
+      {"sample", "", "-o", "s.ply"},
       {"sample", "mesh.obj", "-o", "s.ply", "-n", "0"},
       {"sample", "mesh.obj", "-o", "s.ply", "-n", "16777217"},
       {"sample", "mesh.obj", "-o", "s.ply", "-n", "nan"},
