@@ -216,6 +216,9 @@ TEST(CommandLine, RunWritesItsResults) {
                                  unit["blocked"].get<std::uint64_t>() + unit["idle"].get<std::uint64_t>();
     EXPECT_EQ(booked, frame["cycles"]) << unit;
   }
+  const std::string report = text_of(folder.path() / "a/b/report.html");
+  EXPECT_NE(report.find("Left out: texture, pixel and blend in 1 of 2 draws, as they write no colour."),
+            std::string::npos);
 }
 
 TEST(CommandLine, RunWritesATimelineAndCounters) {

@@ -214,7 +214,7 @@ void add_machine(Report& report, std::string_view caption, const sim::Result& ti
                        {"blocked by", prose}},
                       rows);
   for (const sim::UnitLeftOut& unit : timing.units_left_out)
-    report.paragraph(fmt::format("Not there: {}, as {}.", unit.name, unit.why));
+    report.paragraph(fmt::format("Left out: {}, as {}.", unit.name, unit.why));
 }
 
 }  // namespace splatscope::studies
