@@ -230,6 +230,8 @@ class PixelValidator {
       reject(program_, instruction, "the destination of a texture address instruction is r# in ps_1_4");
     if (instruction.opcode == texdepth && (destination.index != 5 || in_phase_1()))
       reject(program_, instruction, "texdepth takes r5, in the second phase");
+    if (instruction.opcode == texkill && in_phase_1())
+      reject(program_, instruction, "texkill stands in the second phase");
     if (instruction.source_count == 0) return;
     const Source& source = instruction.sources[0];
     using enum SourceModifier;

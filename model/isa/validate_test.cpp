@@ -67,6 +67,16 @@ TEST(Validate, WhatHasBecomeTheDepthIsNoRegister) {
             "accepted");
 }
 
+// A program without a marker is all second phase.
+TEST(Validate, FragmentsAreKilledInTheSecondPhase) {
+  EXPECT_EQ(error_of("ps_1_4\ntexkill t0\nphase\nmov r0, v0\n"), "p:2:1: texkill stands in the second phase");
+  EXPECT_EQ(error_of("ps_1_4\ntexcrd r1.rgb, t0\ntexkill r1\nphase\nmov r0, v0\n"),
+            "p:3:1: texkill stands in the second phase");
+  EXPECT_EQ(error_of("ps_1_4\nphase\ntexkill t0\nmov r0, v0\n"), "accepted");
+  EXPECT_EQ(error_of("ps_1_4\ntexkill t0\nmov r0, v0\n"), "accepted");
+  EXPECT_EQ(error_of("ps_1_1\ntexkill t0\nmov r0, v0\n"), "accepted");
+}
+
 TEST(Validate, ReadsOfTextureRegistersNeedTheirComponents) {
   EXPECT_EQ(error_of("ps_1_1\nmov t1.a, v0\nmov r0, t1\n"),
             "p:3:1: t1 is read before it is written (all the components read)");
