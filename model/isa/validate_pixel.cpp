@@ -157,6 +157,8 @@ class PixelValidator {
     }
     if (instruction.opcode == bem && (destination.mask != 0x3 || !in_phase_1()))
       reject(program_, instruction, "bem writes .rg, in the first phase");
+    if (instruction.opcode == bem && instruction.sources[1].file != RegisterFile::temporary)
+      reject(program_, instruction, "the second source of bem is r#");
   }
 
   void check_arithmetic_source(const Instruction& instruction, const Source& source) const {

@@ -77,6 +77,12 @@ TEST(Validate, FragmentsAreKilledInTheSecondPhase) {
   EXPECT_EQ(error_of("ps_1_1\ntexkill t0\nmov r0, v0\n"), "accepted");
 }
 
+TEST(Validate, BemPerturbsByATemporary) {
+  EXPECT_EQ(error_of("ps_1_4\nbem r1.rg, c0, c1\nphase\nmov r0, v0\n"),
+            "p:2:1: the second source of bem is r#");
+  EXPECT_EQ(error_of("ps_1_4\ntexld r2, t0\nbem r1.rg, c0, -r2_bx2\nphase\nmov r0, v0\n"), "accepted");
+}
+
 TEST(Validate, ReadsOfTextureRegistersNeedTheirComponents) {
   EXPECT_EQ(error_of("ps_1_1\nmov t1.a, v0\nmov r0, t1\n"),
             "p:3:1: t1 is read before it is written (all the components read)");
