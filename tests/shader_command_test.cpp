@@ -16,6 +16,17 @@ TEST(ShaderCommand, CountsSlots) {
   EXPECT_EQ(outcome.out, "6\n");
 }
 
+TEST(ShaderCommand, AByteOrderMarkBeforeTheTextIsNoPartOfIt) {
+  const ScratchFolder folder;
+  folder.file("a.vs", "\xEF\xBB\xBF" + kProgram);
+  const Outcome counted = run_program({"shader", "count", "a.vs"}, folder.path());
+  EXPECT_EQ(counted.status, 0) << counted.error;
+  EXPECT_EQ(counted.out, "6\n");
+  folder.file("m.toml", "\xEF\xBB\xBF" + std::string("base = \"radeon-8500\"\n"));
+  const Outcome shown = run_program({"machine", "show", "m.toml"}, folder.path());
+  EXPECT_EQ(shown.status, 0) << shown.error;
+}
+
 TEST(ShaderCommand, AssemblesToTokensAndBack) {
   const ScratchFolder folder;
   folder.file("a.vs", kProgram);
