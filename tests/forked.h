@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -91,14 +92,22 @@ class Forked {
     ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
   }
 
+  // Where it fails, the child says so in the place of what it should do.
+  static void redirect(const std::filesystem::path& path, int flags, int descriptor) {
+    const int file = ::open(path.c_str(), flags, 0600);
+    if (file >= 0 && ::dup2(file, descriptor) >= 0) return;
+    std::perror(path.c_str());
+    ::_exit(EXIT_FAILURE);
+  }
+
   [[noreturn]] void run(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                         const Limits& limits) const {
     std::filesystem::current_path(folder);
     const auto output = limits.output.empty() ? out() : limits.output;
-    ::dup2(::open(output.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     ::dup2(error_[1], STDERR_FILENO);
     ::close(error_[1]);
-    ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
+    redirect(output, O_WRONLY | O_CREAT, STDOUT_FILENO);
+    redirect("/dev/null", O_RDONLY, STDIN_FILENO);
     limit(RLIMIT_CORE, rlim_t{0});
     limit(RLIMIT_CPU, limits.cpu_seconds);
     limit(RLIMIT_FSIZE, limits.file_bytes);
