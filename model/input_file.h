@@ -12,8 +12,9 @@ namespace splatscope {
 
 inline constexpr std::size_t kMostTextBytes = 1 << 20;
 
-// All of a file, or of a pipe. Throws UserError "path: ..., expected WHAT" where it is missing, a folder,
-// or larger than kMostTextBytes, of which no more is read.
+// All of a file, or of a pipe, but a byte order mark before its text. Throws UserError
+// "path: ..., expected WHAT" where it is missing, a folder, or larger than kMostTextBytes, of which no more
+// is read.
 std::string read_text_file(const std::filesystem::path& path, std::string_view expected);
 
 // Throws UserError "file:line: ..." where `text` is no TOML, or names tables within tables so deep that no
