@@ -205,13 +205,15 @@ Call resolve(const Step& step, Workspace& workspace, const InputBatch& in, Outpu
   return call;
 }
 
-void run_address_step(const Step& step, Workspace& workspace, const InputBatch& in, int count) {
+void run_address_step(const Step& step, Arithmetic arithmetic, Workspace& workspace, const InputBatch& in,
+                      int count) {
   const DefaultMode mode;
   if (step.operation == Operation::load_address) {
     const Operand source = resolve_source(step.sources[0], workspace, in);
     for (int lane = 0; lane < count; ++lane) {
-      const float value = std::floor(
-          negated(source.component[0][static_cast<std::size_t>(lane) * source.stride], source.sign));
+      float value = negated(source.component[0][static_cast<std::size_t>(lane) * source.stride], source.sign);
+      if (arithmetic == Arithmetic::nv20 && std::fpclassify(value) == FP_SUBNORMAL) value = 0;
+      value = std::floor(value);
       const bool in_reach = value >= -4096.0f && value <= 4096.0f;
       workspace.address[lane] = in_reach ? static_cast<std::int32_t>(value) : kOutOfRange;
     }

@@ -111,7 +111,8 @@ struct Call {
 Call resolve(const Step& step, Workspace& workspace, const InputBatch& in, OutputBatch& out);
 
 // load_address and gather_constant, which no SIMD code needs, for vertices 0..count-1, in the default mode.
-void run_address_step(const Step& step, Workspace& workspace, const InputBatch& in, int count);
+void run_address_step(const Step& step, Arithmetic arithmetic, Workspace& workspace, const InputBatch& in,
+                      int count);
 
 // All four components of one result in the given arithmetic: the scalar reference. Components that do not
 // belong to the operation's result are unspecified. Never inlined, also when files are linked as one: callers

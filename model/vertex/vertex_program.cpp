@@ -116,7 +116,7 @@ class VertexProgram::Execution {
     const Call& call = plan_->calls[i];
     const int lanes = grouped ? count / kGroup : count;
     if (is_address_step(step)) {
-      run_address_step(step, each_.workspace, each_.in, count);
+      run_address_step(step, program_.arithmetic, each_.workspace, each_.in, count);
     } else if (step.operation == Operation::spread) {
       run_spread(call, count);
     } else {

@@ -22,8 +22,8 @@ struct Batches {
 };
 
 // Vertex 0's `output` of a program whose v0 is (1, 2, 3, 4) and c0..c3 are (10,20,30,40), (11, ...), ...
-Vec4 run(const std::string& text, Output output) {
-  const VertexProgram program(isa::load("vs_1_1\n" + text, "test"), Arithmetic::ieee);
+Vec4 run(const std::string& text, Output output, Arithmetic arithmetic = Arithmetic::ieee) {
+  const VertexProgram program(isa::load("vs_1_1\n" + text, "test"), arithmetic);
   Batches batch;
   std::memset(batch.in.get(), 0, sizeof(InputBatch));
   for (int c = 0; c < 4; ++c) batch.in->v[0][c][0] = static_cast<float>(c + 1);
@@ -85,6 +85,14 @@ TEST(VertexProgram, RelativeAddressesFloorAndReadZeroOutside) {
   EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.w\nmov oPos, c[a0.x]", oPos), (Vec4{0, 0, 0, 0}));
   EXPECT_EQ(run("def c9, 1.9, -1.5, 95, 200\nmov a0.x, c9.z\nmov oPos, c[a0.x + 95]", oPos),
             (Vec4{0, 0, 0, 0}));
+}
+
+TEST(VertexProgram, AnAddressOfADenormalIsThatOfZeroInNv20) {
+  for (const auto& [value, ieee] : {std::pair{"-1e-40", 10.0f}, {"1e-40", 11.0f}, {"-1e-37", 10.0f}}) {
+    const std::string text = fmt::format("def c9, {}, 0, 0, 0\nmov a0.x, c9.x\nmov oPos, c[a0.x + 1]", value);
+    EXPECT_EQ(run(text, oPos)[0], ieee) << value;
+    EXPECT_EQ(run(text, oPos, Arithmetic::nv20)[0], std::string_view(value) == "-1e-37" ? 10 : 11) << value;
+  }
 }
 
 TEST(VertexProgram, WhatIsNotWrittenIsZeroAndTheDiffuseColourOne) {
