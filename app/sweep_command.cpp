@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "studies/run_files.h"
 #include "studies/sweep.h"
 #include "traces/output_files.h"
 
@@ -36,8 +38,9 @@ void print(const studies::Sweep& sweep) {
 }
 
 void run(const Options& options, bool quiet) {
-  traces::expect_apart({{"a result in --out", std::filesystem::path(options.out) / "results.json"}},
-                       {{"INPUT", options.input}, {"--machine", options.machine}});
+  std::vector<traces::NamedFile> inputs = studies::files_of_input("INPUT", options.input);
+  inputs.push_back({"--machine", options.machine});
+  traces::expect_apart({{"a result in --out", std::filesystem::path(options.out) / "results.json"}}, inputs);
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);

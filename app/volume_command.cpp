@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "studies/run_files.h"
 #include "studies/volume_run.h"
 #include "traces/output_files.h"
 
@@ -30,7 +31,7 @@ void add_volume_command(CLI::App& app, Invocation& invocation) {
   command->callback([options, &invocation] {
     for (const char* name : {"frame.png", "frame.exr", "results.json"})
       traces::expect_apart({{"a result in --out", std::filesystem::path(options->out) / name}},
-                           {{"SCENE", options->scene}});
+                           studies::files_of_input("SCENE", options->scene));
     const auto precision = options->precision == "single" ? studies::Precision::single_precision
                                                           : studies::Precision::double_precision;
     const traces::VolumeScene scene = traces::load_volume_scene(options->scene);

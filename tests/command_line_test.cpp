@@ -474,6 +474,8 @@ TEST(CommandLine, FilesOfOneNameAreRefused) {
   folder.file("mesh.toml", "[surfels]\nfile = \"square.obj\"\n");
   folder.file("volume.toml", "[volume]\nfile = \"v.nrrd\"\n");
   folder.file("v.nrrd", "the scene's");
+  folder.file("named.toml", "[volume]\nfile = \"results.json\"\n");
+  folder.file("results.json", "the scene's");
   const auto before = folder.names();
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
     expect_refused(run_program(arguments, folder.path()), part);
@@ -490,6 +492,9 @@ TEST(CommandLine, FilesOfOneNameAreRefused) {
           "square.obj: is named by -o and by the scene (square.obj)");
   refused({"record", "volume.toml", "-o", "./v.nrrd"}, "by -o and by the scene (v.nrrd)");
   refused({"run", "mesh.toml", "--out", "o", "--counters", "square.obj"}, "by --counters and by the scene");
+  refused({"volume", "named.toml", "--out", "."}, "by a result in --out and by the scene");
+  refused({"sweep", "named.toml", "--sweep", "vertex.units=1,2", "--out", "."},
+          "by a result in --out and by the scene");
   refused({"run", "in.toml", "--out", "o", "--counters", "in.toml"}, "by --counters and by INPUT");
   refused({"run", "in.toml", "--out", "o", "--program", "splat_ewa.vs=a.vs", "--pipeline", "a.vs"},
           "by --pipeline and by --program");
