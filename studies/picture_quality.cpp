@@ -162,8 +162,9 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   const Frame unrounded = draw(scene, captured, exact_frame);
   row.float_frame = compare(unrounded, reference);
   const Frame frame = draw(scene, captured, machine);
-  row.per_surfel = compare(frame, reference);
-  row.same_weights = compare(frame, undivided(same_weights), [&] { return Frame(unrounded); });
+  const auto draw_unrounded = [&] { return Frame(unrounded); };
+  row.per_surfel = compare(frame, reference, draw_unrounded);
+  row.same_weights = compare(frame, undivided(same_weights), draw_unrounded);
   row.picture = picture_of(frame);
   scene.splatting.algorithm = traces::Algorithm::ewa_per_pixel;
   const Trace per_pixel = traces::record(scene, machine.numbers).trace;
