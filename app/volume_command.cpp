@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
@@ -29,9 +30,10 @@ void add_volume_command(CLI::App& app, Invocation& invocation) {
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command->footer("Example: splatscope volume volume-head --out out/head");
   command->callback([options, &invocation] {
+    std::vector<traces::NamedFile> results;
     for (const char* name : {"frame.png", "frame.exr", "results.json"})
-      traces::expect_apart({{"a result in --out", std::filesystem::path(options->out) / name}},
-                           studies::files_of_input("SCENE", options->scene));
+      results.push_back({"a result in --out", std::filesystem::path(options->out) / name});
+    traces::expect_apart(results, studies::files_of_input("SCENE", options->scene));
     const auto precision = options->precision == "single" ? studies::Precision::single_precision
                                                           : studies::Precision::double_precision;
     const traces::VolumeScene scene = traces::load_volume_scene(options->scene);

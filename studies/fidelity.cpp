@@ -14,8 +14,6 @@ namespace splatscope::studies {
 namespace {
 
 constexpr std::string_view kMachines[] = {"geforce4-ti4400", "radeon-8500"};
-constexpr Fidelity kAll[] = {Fidelity::functional, Fidelity::throughput, Fidelity::sampled, Fidelity::cycle,
-                             Fidelity::referee};
 constexpr std::string_view kTable1[] = {"checkerboard-no-ewa", "checkerboard-ewa-per-pixel",
                                         "checkerboard-ewa-per-surfel"};
 
@@ -168,12 +166,12 @@ std::vector<FidelityRow> fidelity_rows(const traces::Scene& scene, int repetitio
     const Machine machine = machine::load(machine_name);
     const Trace trace = traces::record(scene, machine.numbers).trace;
     const std::size_t first = rows.size();
-    for (const Fidelity fidelity : kAll) {
+    for (const Fidelity fidelity : kFidelityLadder) {
       rows.push_back(row_of(scene, machine_name, fidelity, time_run(trace, machine, fidelity, repetitions)));
       if (fidelity == Fidelity::sampled) add_seeds(trace, machine, rows.back());
       if (progress)
         progress(static_cast<double>(rows.size()) /
-                 static_cast<double>(std::size(kMachines) * std::size(kAll)));
+                 static_cast<double>(std::size(kMachines) * std::size(kFidelityLadder)));
     }
     const FidelityRow referee = rows.back();
     for (std::size_t i = first; i < rows.size(); ++i) compare_with(referee, rows[i]);

@@ -32,6 +32,9 @@ struct FidelityRow {
   };
   std::vector<Seed> seeds;  // of fidelity sampled: by --seed 0, 1, ..., kSampleSeeds - 1
 };
+// From the fastest to the one that the others are measured by.
+constexpr Fidelity kFidelityLadder[] = {Fidelity::functional, Fidelity::throughput, Fidelity::sampled,
+                                        Fidelity::cycle, Fidelity::referee};
 constexpr std::uint64_t kSampleSeeds = 10;
 constexpr int kFidelityRepetitions = 3;  // of the study
 

@@ -9,8 +9,6 @@
 namespace splatscope::studies {
 namespace {
 
-constexpr Fidelity kAll[] = {Fidelity::functional, Fidelity::throughput, Fidelity::sampled, Fidelity::cycle,
-                             Fidelity::referee};
 constexpr double kLeastError = 1e-6;  // that the plot shows
 
 double worst_unit(const FidelityRow& row) {
@@ -68,7 +66,7 @@ struct Summary {
 
 std::vector<Summary> summaries_of(std::span<const FidelityRow> rows) {
   std::vector<Summary> summaries;
-  for (const Fidelity fidelity : kAll) {
+  for (const Fidelity fidelity : kFidelityLadder) {
     Summary s;
     s.fidelity = fidelity;
     for (const FidelityRow& row : rows) {
@@ -145,7 +143,7 @@ void add_units(Report& report, std::span<const FidelityRow> rows) {
   std::vector<std::vector<std::string>> cells;
   for (const std::string& name : units) {
     cells.push_back({name});
-    for (const Fidelity fidelity : std::span(kAll).subspan(1, 3)) {
+    for (const Fidelity fidelity : std::span(kFidelityLadder).subspan(1, 3)) {
       double worst = 0;
       for (const FidelityRow& row : rows) {
         if (row.fidelity != fidelity) continue;
@@ -181,7 +179,7 @@ void add_plot(Findings& findings, std::span<const FidelityRow> rows) {
             .y_label = "error of the cycles, %",
             .log_x = true,
             .log_y = true};
-  for (const Fidelity fidelity : std::span(kAll).subspan(1)) {
+  for (const Fidelity fidelity : std::span(kFidelityLadder).subspan(1)) {
     Plot::Series series{.name = std::string(name(fidelity)), .x = {}, .y = {}, .joined = false};
     for (const FidelityRow& row : rows) {
       if (row.fidelity != fidelity) continue;
