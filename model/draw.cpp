@@ -9,11 +9,11 @@
 #include <memory>
 #include <optional>
 
+#include "model/clear_tiles.h"
 #include "model/fragment_pipe.h"
 #include "model/geometry.h"
 #include "model/output/output.h"
 #include "model/stop.h"
-#include "model/written_tiles.h"
 
 namespace splatscope {
 namespace {
@@ -124,7 +124,7 @@ class DrawStages {
                state_.depth_write} {
     work_.samples_only = record_ == Record::samples;
     if (record_ != Record::nothing) work_.triangles.reserve(bindings.draw.index_count / 3);
-    if (work_.samples_only && state_.depth_write) tiles_.emplace(frame.width, frame.height);
+    if (record_ != Record::nothing && (state_.depth_test || state_.depth_write)) clear_tiles_.emplace(frame);
   }
 
   // One batch at a time.
@@ -196,12 +196,6 @@ class DrawStages {
     return false;
   }
 
-  // Whether the quads of the next triangle are noted.
-  bool notes_quads() const {
-    return record_ == Record::everything ||
-           (record_ == Record::samples && is_sampled(work_.triangles.size()));
-  }
-
   // Coverage and depth; take(band) gets each band in which there is something to shade or to note, with its
   // windows in the room() that was asked for last.
   template <typename Room, typename Take>
@@ -234,20 +228,22 @@ class DrawStages {
   void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Room room,
                  Take take) {
     if (!setup.covers) return;
-    const bool noted = notes_quads();
+    const bool sampled = record_ != Record::nothing && is_sampled(work_.triangles.size());
+    const bool noted = sampled || record_ == Record::everything;
     if (record_ != Record::nothing) work.tile_count += raster::tiles_touched(setup);
     for (int y = setup.top & ~1; y < setup.bottom; y += raster::kWindow) {
       const Windows windows = room();
+      if (sampled && clear_tiles_) clear_tiles_->look(setup, y);
       const raster::BandCounts counts = raster::rasterize_band(setup, depth_, y, windows);
       counters_.fragments += counts.covered;
       counters_.fragments_passed += counts.passed;
       work.quad_count += counts.quads;
       work.quads_passed += counts.quads_passed;
+      if (sampled && clear_tiles_)
+        clear_tiles_->note(windows.first(counts.windows), static_cast<std::uint32_t>(work_.triangles.size()),
+                           work_.clear_tiles);
       if (noted ? counts.windows != 0 : state_.color_write && counts.passed != 0)
         take(Band{piece, noted, counts.windows, counts.passed});
-      if (!noted && tiles_)
-        tiles_->note(windows.first(counts.windows), static_cast<std::uint32_t>(work_.triangles.size()),
-                     work_.tiles_written);
     }
   }
 
@@ -275,7 +271,7 @@ class DrawStages {
   DrawWork& work_;
   RenderCounters& counters_;
   raster::DepthTarget depth_;
-  std::optional<WrittenTiles> tiles_;
+  std::optional<ClearTiles> clear_tiles_;  // where depth is recorded
   std::array<raster::Window, raster::kMaxWindows> windows_;
   std::atomic<int> waiting_ = 0;  // batches whose depth is tested when they are written
 };

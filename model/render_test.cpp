@@ -188,7 +188,7 @@ Trace many_triangles() {
   constexpr std::size_t kCorner = 4, kTriangle = 3 * kCorner, kTriangles = 6000;
   static std::array<float, kTriangle * kTriangles> corners;
   for (std::size_t triangle = 0; triangle < kTriangles; ++triangle) {
-    const float size = triangle / 700 % 3 == 1 ? 1.0f : 0.05f;
+    const float size = triangle / 100 % 3 == 1 ? 1.0f : 0.05f;
     const float x = anywhere(random), y = anywhere(random);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::array<float, kCorner> position{x + size * anywhere(random), y + size * anywhere(random),
@@ -248,25 +248,36 @@ TEST(Render, EverySimdTargetGivesTheSameBits) {
   });
 }
 
-// Of the triangles that are not sampled there is no quad, but every tile in which they were the first to
-// write.
+// Of the triangles that are not sampled there is no quad; of the others, every tile that nothing was written
+// in before them.
 TEST(Render, SamplesOfTheWorkAreThoseOfAllOfIt) {
   const Trace trace = many_triangles();
   const DrawWork all = on_threads(trace, 1, Record::everything).work[0];
   std::vector<QuadWork> sampled;
-  std::vector<std::array<std::uint32_t, 2>> first_written;
+  std::set<std::array<std::uint32_t, 2>> clear;
   std::set<std::uint32_t> written;
   auto quad = all.quads.begin();
   for (std::uint32_t i = 0; i < all.triangles.size(); ++i) {
-    for (const auto end = quad + all.triangles[i].quad_count; quad != end; ++quad) {
-      if (is_sampled(i)) sampled.push_back(*quad);
-      const std::uint32_t tile = quad->y / 2u * (trace.width / 4) + quad->x / 2u;
-      if (!is_sampled(i) && quad->passed != 0 && written.insert(tile).second)
-        first_written.push_back({i, tile});
+    const auto tile_of = [&](const QuadWork& of) { return of.y / 2u * (trace.width / 4) + of.x / 2u; };
+    const std::span quads(quad, all.triangles[i].quad_count);
+    quad += all.triangles[i].quad_count;
+    if (is_sampled(i)) {
+      sampled.insert(sampled.end(), quads.begin(), quads.end());
+      for (const QuadWork& each : quads)
+        if (!written.contains(tile_of(each))) clear.insert({i, tile_of(each)});
     }
+    for (const QuadWork& each : quads)
+      if (each.passed != 0) written.insert(tile_of(each));
   }
   ASSERT_GT(written.size(), 2000u) << "of 2500 tiles";
+  ASSERT_GT(clear.size(), 500u);
   ASSERT_GT(sampled.size(), 1500u);
+  const auto tiles_of = [](const DrawWork& work) {
+    std::set<std::array<std::uint32_t, 2>> tiles;
+    for (const ClearTile& tile : work.clear_tiles) tiles.insert({tile.triangle, tile.tile});
+    return tiles;
+  };
+  EXPECT_EQ(tiles_of(all), clear);
   for (const std::size_t threads : {1u, 2u, 4u}) {
     const DrawWork samples = on_threads(trace, threads, Record::samples).work[0];
     EXPECT_TRUE(samples.samples_only);
@@ -275,11 +286,8 @@ TEST(Render, SamplesOfTheWorkAreThoseOfAllOfIt) {
     for (std::size_t i = 0; i < all.triangles.size(); ++i)
       ASSERT_EQ(samples.triangles[i].quads_passed, all.triangles[i].quads_passed) << i;
     EXPECT_EQ(listed(samples.quads), listed(sampled));
-    std::vector<std::array<std::uint32_t, 2>> tiles;
-    for (const TileWritten& tile : samples.tiles_written) tiles.push_back({tile.triangle, tile.tile});
-    std::ranges::sort(tiles);  // those of one triangle are in another order
-    std::ranges::sort(first_written);
-    EXPECT_EQ(tiles, first_written);
+    EXPECT_EQ(tiles_of(samples), clear);
+    EXPECT_TRUE(std::ranges::is_sorted(samples.clear_tiles, {}, &ClearTile::triangle));
   }
 }
 

@@ -17,7 +17,7 @@
 namespace splatscope::studies {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x324b524f574c5053;  // "SPLWORK2": changes with the layout
+constexpr std::uint64_t kMagic = 0x334b524f574c5053;  // "SPLWORK3": changes with the layout
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -139,6 +139,7 @@ WorkStream stream_of(std::string_view body) {
     reader.take(work.triangles);
     reader.take(work.quads);
     reader.take(work.texel_blocks);
+    reader.take(work.clear_tiles);
   }
   if (!reader.at_end()) throw std::out_of_range("work stream");
   return stream;
@@ -199,6 +200,7 @@ void WorkCache::write(const std::string& key, const WorkStream& stream) const {
     body.add(work.triangles);
     body.add(work.quads);
     body.add(work.texel_blocks);
+    body.add(work.clear_tiles);
   }
   Writer file;
   const std::string& text = body.text();

@@ -20,6 +20,7 @@ struct Frame {
   std::vector<Vec4> colors32;   // r g b a
   std::vector<std::uint32_t>
       depth;  // z16/z24: 0..2^bits-1; float32: the bits of a float in [0, 1], which order alike
+  std::uint32_t cleared_depth = 0;  // by the last clear
 
   Frame(std::uint32_t width, std::uint32_t height, const NumberFormats& formats);
 

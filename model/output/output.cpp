@@ -38,7 +38,8 @@ void clear(const Clear& command, Frame& frame) {
   for (std::size_t c = 0; c < 4; ++c)
     stored[c] = stored_value(frame.formats.frame, command.color[c], kHalfStep);
   std::ranges::fill(frame.colors32, stored);
-  std::ranges::fill(frame.depth, quantize_depth(command.depth, frame.formats.depth));
+  frame.cleared_depth = quantize_depth(command.depth, frame.formats.depth);
+  std::ranges::fill(frame.depth, frame.cleared_depth);
 }
 
 namespace {

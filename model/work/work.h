@@ -39,15 +39,16 @@ inline constexpr std::uint32_t kTexelBlockEdge = 4;
 // 4x4 pixels of the frame, numbered by rows: what a cache line of it holds.
 inline constexpr std::uint32_t kFrameTileEdge = 4;
 
-// The first depth written in a tile by the triangles that are not sampled.
-struct TileWritten {
+// A tile in which a sampled triangle covers pixels, and where all depth is still that of the last clear.
+struct ClearTile {
   std::uint32_t triangle = 0;
   std::uint32_t tile = 0;
 };
 
-// Estimates look at the quads of some triangles only: of one run in every 16, from the first.
-inline constexpr std::size_t kSampledRun = 256;
-inline constexpr std::size_t kSampledRunsApart = 16;
+// Estimates look at the quads of some triangles only: of one run in every 32, from the first. Runs half as
+// long begin too often with caches that hold nothing of them; twice as long and as rare, they miss too much.
+inline constexpr std::size_t kSampledRun = 128;
+inline constexpr std::size_t kSampledRunsApart = 32;
 constexpr bool is_sampled(std::size_t triangle) {
   return triangle / kSampledRun % kSampledRunsApart == 0;
 }
@@ -58,10 +59,10 @@ struct DrawWork {
   std::vector<TriangleWork> triangles;         // as indexed
   std::vector<QuadWork> quads;                 // of all triangles in order
   std::vector<std::uint32_t> texel_blocks;     // of all quads in order
+  std::vector<ClearTile> clear_tiles;          // by triangle
   // Whether only samples of it were recorded: no shaded vertices, quads and texel blocks of the sampled
-  // triangles, and what the others left in the depth buffer, in order.
+  // triangles.
   bool samples_only = false;
-  std::vector<TileWritten> tiles_written;
 
   // The first triangle behind this one whose quads, if it has any, are in the record.
   std::size_t next_recorded(std::size_t triangle) const {

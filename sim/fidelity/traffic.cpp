@@ -24,28 +24,25 @@ double touch(CacheTags& tags, std::uint32_t line, double fetched, double written
   return bytes;
 }
 
-// look(quad, texel blocks, whether its triangle is sampled, triangle) for each quad of the record.
+// look(triangle, its quads, their texel blocks) for each sampled triangle.
 template <typename Look>
-void each_quad(const DrawWork& work, Look look) {
-  auto quad = work.quads.begin();
+void each_sample(const DrawWork& work, Look look) {
+  const QuadWork* quad = work.quads.data();
   const std::uint32_t* block = work.texel_blocks.data();
   for (std::size_t triangle = 0; triangle < work.triangles.size(); triangle = work.next_recorded(triangle)) {
-    const bool sampled = is_sampled(triangle);
-    for (const auto end = quad + work.triangles[triangle].quad_count; quad != end; ++quad) {
-      look(*quad, std::span(block, quad->texel_block_count), sampled, triangle);
-      block += quad->texel_block_count;
-    }
+    const std::span quads(quad, work.triangles[triangle].quad_count);
+    std::size_t blocks = 0;
+    for (const QuadWork& each : quads) blocks += each.texel_block_count;
+    if (is_sampled(triangle)) look(triangle, quads, std::span(block, blocks));
+    quad += quads.size();
+    block += blocks;
   }
 }
 
 }  // namespace
 
 TrafficCounter::TrafficCounter(const Machine& machine, const MemoryLayout& layout)
-    : machine_(machine), layout_(layout), cleared_(layout.depth.lines(), 0) {}
-
-void TrafficCounter::clear() {
-  std::ranges::fill(cleared_, machine_.depth.fast_clear);
-}
+    : machine_(machine), layout_(layout), is_clear_(layout.depth.lines(), 0) {}
 
 // Depth and what lies behind it share no cache.
 Traffic TrafficCounter::of(const DrawJob& job) {
@@ -55,30 +52,27 @@ Traffic TrafficCounter::of(const DrawJob& job) {
 }
 
 void TrafficCounter::count_depth(const DrawJob& job, Traffic& traffic) {
+  if (!uses_depth(*job.draw)) return;
   const DrawWork& work = *job.work;
-  const bool reads = uses_depth(*job.draw), writes = job.draw->state.depth_write;
   const double line_bytes = layout_.depth.line_bytes();
   CacheTags cache(machine_.depth.cache_lines, machine_.depth.cache_ways);
-  auto written = work.tiles_written.begin();
-  const auto note_written = [&](std::size_t up_to) {
-    for (; written != work.tiles_written.end() && written->triangle <= up_to; ++written)
-      cleared_[written->tile] = 0;
-  };
-  double quads = 0, bytes = 0;
-  each_quad(work,
-            [&](const QuadWork& quad, std::span<const std::uint32_t>, bool sampled, std::size_t triangle) {
-              note_written(triangle);
-              const bool is_written = writes && quad.passed != 0;
-              const std::uint32_t line = layout_.depth.line_of(quad);
-              if (sampled) {
-                ++quads;
-                if (reads)
-                  bytes += touch(cache, line, cleared_[line] != 0 ? 0 : line_bytes, line_bytes, is_written);
-              }
-              if (is_written) cleared_[line] = 0;
-            });
-  note_written(work.triangles.size());
-  traffic.depth = bytes / std::max(1.0, quads);
+  auto clear = work.clear_tiles.begin();
+  double count = 0, bytes = 0;
+  each_sample(work,
+              [&](std::size_t triangle, std::span<const QuadWork> quads, std::span<const std::uint32_t>) {
+                const auto first = clear;
+                for (; clear != work.clear_tiles.end() && clear->triangle <= triangle; ++clear)
+                  is_clear_[clear->tile] = cleared_;
+                for (const QuadWork& quad : quads) {
+                  const bool is_written = job.draw->state.depth_write && quad.passed != 0;
+                  const std::uint32_t line = layout_.depth.line_of(quad);
+                  bytes += touch(cache, line, is_clear_[line] != 0 ? 0 : line_bytes, line_bytes, is_written);
+                  if (is_written) is_clear_[line] = 0;
+                }
+                count += static_cast<double>(quads.size());
+                for (const ClearTile& tile : std::span(first, clear)) is_clear_[tile.tile] = 0;
+              });
+  traffic.depth = bytes / std::max(1.0, count);
 }
 
 void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
@@ -90,18 +84,20 @@ void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
       std::countr_zero(static_cast<unsigned>(machine_.texture.line_bytes / 16));  // of blocks
   CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);
   CacheTags texture(machine_.texture.cache_lines, machine_.texture.cache_ways);
-  double quads = 0;
-  each_quad(*job.work,
-            [&](const QuadWork& quad, std::span<const std::uint32_t> blocks, bool sampled, std::size_t) {
-              if (!sampled || !is_colored(job, quad)) return;
-              ++quads;
-              traffic.color += touch(color, layout_.depth.line_of(quad), read_bytes, line_bytes, true);
-              traffic.texel_blocks += static_cast<double>(blocks.size());
-              for (const std::uint32_t block : blocks)
-                traffic.texture += touch(texture, block >> line_shift, fill_bytes, 0, false);
-            });
+  double count = 0;
+  each_sample(*job.work,
+              [&](std::size_t, std::span<const QuadWork> quads, std::span<const std::uint32_t> blocks) {
+                traffic.texel_blocks += static_cast<double>(blocks.size());
+                for (const std::uint32_t block : blocks)
+                  traffic.texture += touch(texture, block >> line_shift, fill_bytes, 0, false);
+                for (const QuadWork& quad : quads) {
+                  if (!is_colored(job, quad)) continue;
+                  ++count;
+                  traffic.color += touch(color, layout_.depth.line_of(quad), read_bytes, line_bytes, true);
+                }
+              });
   for (double* of_all : {&traffic.color, &traffic.texture, &traffic.texel_blocks})
-    *of_all /= std::max(1.0, quads);
+    *of_all /= std::max(1.0, count);
 }
 
 }  // namespace splatscope::sim

@@ -24,7 +24,7 @@ class TrafficCounter {
 
   // Draws and clears in the order of the trace.
   Traffic of(const DrawJob& job);
-  void clear();
+  void clear() { cleared_ = machine_.depth.fast_clear; }
 
  private:
   void count_depth(const DrawJob& job, Traffic& traffic);
@@ -32,7 +32,8 @@ class TrafficCounter {
 
   const Machine& machine_;
   const MemoryLayout& layout_;
-  std::vector<std::uint8_t> cleared_;  // depth lines that hold the clear value and are not read
+  bool cleared_ = false;                // clear depth lines are not read
+  std::vector<std::uint8_t> is_clear_;  // of the depth lines of a triangle
 };
 
 }  // namespace splatscope::sim
