@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,18 +39,33 @@ constexpr Fidelity kFidelityLadder[] = {Fidelity::functional, Fidelity::throughp
 constexpr std::uint64_t kSampleSeeds = 10;
 constexpr int kFidelityRepetitions = 3;  // of the study
 
-// All fidelities on one scene and both machines. The host's seconds are the least of `repetitions` runs, but
+// A frame as each machine draws it.
+struct FidelityFrame {
+  std::string scene;
+  int resolution = 0;  // pixels: width and height
+  std::function<Trace(const Machine&)> record;
+};
+FidelityFrame frame_of(traces::Scene scene);
+
+// Those of the paper's figures (Ren 2002) that draw other scenes than the tables: one a scene, as the paper
+// says that it should be drawn.
+std::vector<FidelityFrame> figure_frames();
+
+// All fidelities on one frame and both machines. The host's seconds are the least of `repetitions` runs, but
 // for the referee, which runs once.
-std::vector<FidelityRow> fidelity_rows(const traces::Scene& scene, int repetitions,
+std::vector<FidelityRow> fidelity_rows(const FidelityFrame& frame, int repetitions,
                                        const Progress& progress = {});
 
-// What is said of the frames of a table: a line for each fidelity.
-std::string fidelity_text(std::string_view table, std::span<const FidelityRow> rows);
+struct FidelityGroup {
+  std::string_view name;  // "Table 1"
+  std::vector<FidelityRow> rows;
+};
+// What is said of the frames of a group: a line for each fidelity.
+std::string fidelity_text(const FidelityGroup& group);
 // Tables, a plot and figures.
-void add_fidelity_report(Findings& findings, std::span<const FidelityRow> table1,
-                         std::span<const FidelityRow> table2);
+void add_fidelity_report(Findings& findings, std::span<const FidelityGroup> groups);
 
-// The study: the frames of Table 1 and those of Table 2.
+// The study: the frames of Table 1, of Table 2 and of the figures.
 void study_fidelity(Findings& findings, const Progress& progress);
 
 }  // namespace splatscope::studies

@@ -36,7 +36,7 @@ std::ptrdiff_t covered(const FidelityRow& row) {
   return std::ranges::count_if(row.seeds, &FidelityRow::Seed::covers);
 }
 
-// What one fidelity does over all frames of a table.
+// What one fidelity does over all frames of a group.
 struct Summary {
   Fidelity fidelity;
   double seconds = 0, cycles = 0, megabytes = 0;
@@ -222,9 +222,9 @@ bool FidelityRow::Seed::covers() const {
   return std::abs(cycles - cycles / (1 + error)) <= plus_minus;
 }
 
-std::string fidelity_text(std::string_view table, std::span<const FidelityRow> rows) {
-  const std::vector<Summary> summaries = summaries_of(rows);
-  std::string text = fmt::format("{}, {} frames against the referee\n", table, summaries[0].frames);
+std::string fidelity_text(const FidelityGroup& group) {
+  const std::vector<Summary> summaries = summaries_of(group.rows);
+  std::string text = fmt::format("{}, {} frames against the referee\n", group.name, summaries[0].frames);
   text += fmt::format("{:<11} {:>11} {:>9} {:>12} {:>11} {:>12} {:>8}\n", "fidelity", "s a frame",
                       "Mcycles/s", "worst error", "mean error", "utilisation", "peak MB");
   for (const Summary& s : summaries) {
@@ -240,21 +240,23 @@ std::string fidelity_text(std::string_view table, std::span<const FidelityRow> r
   return text;
 }
 
-void add_fidelity_report(Findings& findings, std::span<const FidelityRow> table1,
-                         std::span<const FidelityRow> table2) {
-  std::vector<FidelityRow> rows(table1.begin(), table1.end());
-  rows.insert(rows.end(), table2.begin(), table2.end());
+void add_fidelity_report(Findings& findings, std::span<const FidelityGroup> groups) {
+  std::vector<FidelityRow> rows;
+  for (const FidelityGroup& group : groups) rows.insert(rows.end(), group.rows.begin(), group.rows.end());
   Report& report = findings.report();
   report.heading("Speed against accuracy");
   report.paragraph(fmt::format(
-      "All frames of Table 1 and of Table 2 (its stand-ins with the published number of points, at both "
-      "resolutions) on both machines. Host seconds hold function and timing, and are the least of {} runs "
+      "All frames of Table 1, of Table 2 (its stand-ins with the published number of points, at both "
+      "resolutions) and of the figures that draw other scenes, on both machines. Host seconds hold function "
+      "and timing, and are the least of {} runs "
       "(the referee's: of one). Errors are against the referee; those of sampled are of all seeds from 0 to "
       "{}. Memory is that of the whole process, the trace included.",
       kFidelityRepetitions, kSampleSeeds - 1));
-  const std::string utilisation = " Utilisation: the worst of any unit, in percentage points.";
-  add_summary(report, "Over all frames of Table 1." + utilisation, summaries_of(table1));
-  add_summary(report, "Over all frames of Table 2." + utilisation, summaries_of(table2));
+  for (const FidelityGroup& group : groups)
+    add_summary(report,
+                fmt::format("{}, over all frames. Utilisation: the worst of any unit, in percentage points.",
+                            group.name),
+                summaries_of(group.rows));
   add_plot(findings, rows);
   add_units(report, rows);
   add_frames(report, rows);

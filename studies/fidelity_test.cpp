@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "studies/peak_memory.h"
 
@@ -14,7 +16,7 @@ TEST(FidelityStudy, EveryFidelityStandsBesideTheReferee) {
       "[surfels]\ngenerator = \"plane\"\ncolumns = 40\nrows = 40\n[frame]\nwidth = 96\nheight = 96\n"
       "[capture]\nviews = 2\nframe_size = 96\n",
       "plane");
-  const std::vector<FidelityRow> rows = fidelity_rows(scene, 1);
+  const std::vector<FidelityRow> rows = fidelity_rows(frame_of(scene), 1);
   ASSERT_EQ(10u, rows.size());
   for (const FidelityRow& row : rows) {
     SCOPED_TRACE(std::string(name(row.fidelity)) + " on " + row.machine);
@@ -43,10 +45,10 @@ TEST(FidelityStudy, ATableIsSummedUp) {
       "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
       "[capture]\nviews = 1\nframe_size = 64\n",
       "plane");
-  const std::vector<FidelityRow> rows = fidelity_rows(scene, 1);
+  const std::vector<FidelityRow> rows = fidelity_rows(frame_of(scene), 1);
   EXPECT_EQ(rows.back().fidelity, Fidelity::referee);
   EXPECT_EQ(rows.back().resolution, 64);
-  const std::string text = fidelity_text("Table 2", rows);
+  const std::string text = fidelity_text({"Table 2", rows});
   EXPECT_TRUE(text.starts_with("Table 2, 2 frames against the referee\n")) << text;
   EXPECT_NE(text.find("covers 20 of 20\n"), std::string::npos) << text;
 }
@@ -74,9 +76,58 @@ TEST(FidelityStudy, SampledIsJudgedByEverySeed) {
   sampled.host_seconds = cycle.host_seconds = functional.host_seconds = 1;
   sampled.seeds = {{1000, 4, 0}, {1020, 21, 0.02}, {990, 8, -0.01}, {1010, 9, 0.01}};
   cycle.fidelity = Fidelity::cycle;
-  const std::string text = fidelity_text("Table 1", std::vector{functional, sampled, cycle});
+  const std::string text = fidelity_text({"Table 1", {functional, sampled, cycle}});
   EXPECT_NE(text.find(" 2.00 %      1.00 %"), std::string::npos) << text;
   EXPECT_NE(text.find("+- 1.04 % on average and 2.06 % at most, covers 2 of 4\n"), std::string::npos) << text;
+}
+
+// Fig. 3 is a depth image: its frames write no colour.
+TEST(FidelityStudy, FiguresWithScenesOfTheirOwnAreDrawn) {
+  const Machine machine = machine::load("geforce4-ti4400");
+  std::vector<std::string> names;
+  for (const FidelityFrame& frame : figure_frames()) {
+    names.push_back(frame.scene);
+    EXPECT_EQ(frame.resolution, 512);
+    std::size_t draws = 0, of_colour = 0;
+    for (const Command& command : frame.record(machine).commands) {
+      const Draw* draw = std::get_if<Draw>(&command);
+      if (draw == nullptr) continue;
+      ++draws;
+      of_colour += draw->state.color_write;
+    }
+    EXPECT_GT(draws, 0u) << frame.scene;
+    EXPECT_EQ(of_colour == 0, frame.scene.starts_with("fig3")) << frame.scene;
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"fig3-even", "fig3-uneven", "fig4", "fig5", "fig10-model",
+                                             "fig10-sheet"}));
+}
+
+TEST(FidelityStudy, EveryGroupIsInTheReportAndInTheResults) {
+  const std::filesystem::path folder = testing::TempDir() + "fidelity-groups";
+  std::vector<FidelityGroup> groups{{"Table 1", {}}, {"Figures", {}}};
+  for (FidelityGroup& group : groups) {
+    FidelityRow& row = group.rows.emplace_back();
+    row.scene = std::string("a scene of ") + std::string(group.name);
+    row.fidelity = Fidelity::cycle;
+    row.cycles = 1000;
+    row.host_seconds = 1;
+  }
+  Findings findings(folder, "fidelity", "");
+  add_fidelity_report(findings, groups);
+  findings.write(1);
+  const auto text_of = [&](const char* name) {
+    std::ifstream file(folder / name);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string report = text_of("report.html");
+  const auto results = nlohmann::json::parse(text_of("results.json"))["fidelity"];
+  ASSERT_EQ(results.size(), groups.size());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    EXPECT_NE(report.find(std::string(groups[i].name) + ", over all frames"), std::string::npos);
+    EXPECT_NE(report.find(groups[i].rows[0].scene), std::string::npos);
+    EXPECT_EQ(results[i]["scene"], groups[i].rows[0].scene);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 TEST(PeakMemory, GrowsWithWhatIsTakenAndStartsAgain) {

@@ -19,19 +19,24 @@ nlohmann::ordered_json json_of(const FragmentCounts& counts) {
 
 }  // namespace
 
-OffsetRun run_with_offset(traces::Scene scene, traces::DepthOffsetScheme scheme, double z_t,
-                          const traces::CapturedWeights& weights, const Machine& machine,
-                          const VisibleSurface& surface) {
+traces::Scene with_offset(traces::Scene scene, traces::DepthOffsetScheme scheme, double z_t) {
   scene.splatting.depth_offset = z_t;
   scene.splatting.depth_offset_scheme = scheme;
   // Fragments are found by their surfels' order, and the rule knows no front.
   scene.hierarchy.culling = traces::Culling::none;
   scene.splatting.faces = traces::Faces::both;
-  Trace trace = traces::record(scene, weights).trace;
+  return scene;
+}
+
+OffsetRun run_with_offset(const traces::Scene& scene, traces::DepthOffsetScheme scheme, double z_t,
+                          const traces::CapturedWeights& weights, const Machine& machine,
+                          const VisibleSurface& surface) {
+  const traces::Scene drawn = with_offset(scene, scheme, z_t);
+  Trace trace = traces::record(drawn, weights).trace;
   RenderOptions options;
   options.formats = machine.numbers;
   Rendered rendered = render(trace, options);
-  const FragmentCounts counts = count_fragments(scene, trace, rendered, surface);
+  const FragmentCounts counts = count_fragments(drawn, trace, rendered, surface);
   return {std::move(trace), std::move(rendered), counts};
 }
 

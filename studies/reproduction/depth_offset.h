@@ -8,6 +8,12 @@
 // One scene with the depth offset of either scheme (Ren 2002, section 5.1): what Fig. 4 and Fig. 5 compare.
 namespace splatscope::studies {
 
+traces::Scene figure4_scene();
+traces::Scene figure5_scene();
+
+// `scene` with z_t of `scheme`, all surfels in its order.
+traces::Scene with_offset(traces::Scene scene, traces::DepthOffsetScheme scheme, double z_t);
+
 struct OffsetRun {
   Trace trace;
   Rendered rendered;  // with its work
@@ -15,7 +21,7 @@ struct OffsetRun {
 };
 
 // Draws `scene` with z_t of `scheme` on `machine`. `surface` is the scene's.
-OffsetRun run_with_offset(traces::Scene scene, traces::DepthOffsetScheme scheme, double z_t,
+OffsetRun run_with_offset(const traces::Scene& scene, traces::DepthOffsetScheme scheme, double z_t,
                           const traces::CapturedWeights& weights, const Machine& machine,
                           const VisibleSurface& surface);
 

@@ -13,20 +13,6 @@
 namespace splatscope::studies {
 namespace {
 
-// The paper's model is not known: a stand-in of another table, sampled coarsely so that the splats show.
-traces::Scene lizard() {
-  return traces::parse_scene("[surfels]\ngenerator = \"chameleon\"\ncount = 30000\n", "lizard.toml");
-}
-
-// A sheet with edges, in the middle of the picture.
-traces::Scene sheet() {
-  return traces::parse_scene(
-      "[surfels]\ngenerator = \"plane\"\ncolumns = 40\nrows = 40\nchecker_square = 5\n"
-      "checker_light = [0.7, 0.75, 0.8]\nchecker_dark = [0.4, 0.25, 0.2]\n"
-      "[camera]\neye = [0, 34, 40]\ntarget = [0, 0, 2]\nfov_y_degrees = 55\n",
-      "sheet.toml");
-}
-
 constexpr double kGammas[] = {0.2, 0.3, 0.4, 0.5, 0.55, 0.6, 0.65, 0.73, 1};
 
 // The half of the surfels with the smaller x, as a user might mark a part of the model.
@@ -103,7 +89,7 @@ class Figure10 {
   void show() { findings_.pictures(std::exchange(pictures_, {})); }
 
   void ways() {
-    const traces::Scene scene = lizard();
+    const traces::Scene scene = figure10_model();
     const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
     add("direct", "a) without normalisation: every weight is 1",
         draw_weighted(scene, unnormalized(scene, 1), machine_), reference);
@@ -129,7 +115,7 @@ class Figure10 {
   }
 
   void corners() {
-    traces::Scene scene = sheet();
+    traces::Scene scene = figure10_sheet();
     const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
     for (const bool on : {false, true}) {
       scene.capture.corner_weights = on;
@@ -143,7 +129,7 @@ class Figure10 {
   }
 
   void gammas() {
-    traces::Scene scene = lizard();
+    traces::Scene scene = figure10_model();
     scene.capture.views = 12;
     const auto rows =
         sweep_gamma(scene, kGammas, machine_, screen_space_reference(scene), part(progress_, 0.5, 1));
@@ -196,6 +182,20 @@ double clamped_share(const traces::CapturedWeights& weights, double gamma) {
 }
 
 }  // namespace
+
+// The paper's model is not known: a stand-in of another table, sampled coarsely so that the splats show.
+traces::Scene figure10_model() {
+  return traces::parse_scene("[surfels]\ngenerator = \"chameleon\"\ncount = 30000\n", "lizard.toml");
+}
+
+// A sheet with edges, in the middle of the picture.
+traces::Scene figure10_sheet() {
+  return traces::parse_scene(
+      "[surfels]\ngenerator = \"plane\"\ncolumns = 40\nrows = 40\nchecker_square = 5\n"
+      "checker_light = [0.7, 0.75, 0.8]\nchecker_dark = [0.4, 0.25, 0.2]\n"
+      "[camera]\neye = [0, 34, 40]\ntarget = [0, 0, 2]\nfov_y_degrees = 55\n",
+      "sheet.toml");
+}
 
 Frame draw_weighted(const traces::Scene& scene, const traces::CapturedWeights& weights,
                     const Machine& machine) {

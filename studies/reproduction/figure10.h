@@ -7,10 +7,15 @@
 #include "model/machine/machine.h"
 #include "model/output/frame.h"
 #include "studies/study.h"
+#include "traces/scene.h"
 #include "traces/weight_capture.h"
 
 // Normalisation of the splats' weights (Ren 2002, section 7): Fig. 10, and what the text says beside it.
 namespace splatscope::studies {
+
+// A model with few surfels, and a sheet with edges.
+traces::Scene figure10_model();
+traces::Scene figure10_sheet();
 
 // One value of gamma (7.2): what clamping does to the capture of weights, and that to the picture.
 struct GammaRow {

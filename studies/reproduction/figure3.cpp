@@ -23,7 +23,6 @@ traces::Scene knot(int count) {
 constexpr std::size_t kSurfels = 20000;
 constexpr int kDenseSurfels = 400000;
 
-// As many surfels of the same model at random, as a scanner might leave them.
 traces::Scene uneven(const traces::Scene& dense) {
   traces::Scene scene = dense;
   scene.surfels.clear();
@@ -39,19 +38,6 @@ double mean_radius(const traces::Scene& scene) {
   double sum = 0;
   for (const traces::Surfel& surfel : scene.surfels) sum += surfel.radius;
   return sum / static_cast<double>(scene.surfels.size());
-}
-
-// The first pass alone, with quads of `side` h.
-Frame draw_quads(traces::Scene scene, double side, const Machine& machine) {
-  for (traces::Surfel& surfel : scene.surfels) surfel.radius *= static_cast<float>(0.5 * side);
-  const std::vector<traces::VertexWeights> weights(scene.surfels.size());
-  Trace trace = traces::splat_trace({scene.surfels, weights}, traces::view_of(scene.camera, scene.frame),
-                                    scene.splatting, {});
-  std::erase_if(trace.commands, [](const Command& command) {
-    const Draw* draw = std::get_if<Draw>(&command);
-    return draw != nullptr && draw->state.color_write;
-  });
-  return run_frame(trace, machine, Fidelity::functional).rendered.frame;
 }
 
 // Near is white; holes are red.
@@ -77,13 +63,33 @@ Image picture_of(const DepthImage& depth) {
 
 }  // namespace
 
+Figure3Scenes figure3_scenes() {
+  Figure3Scenes scenes{.even = knot(kSurfels), .uneven = {}, .dense = knot(kDenseSurfels)};
+  scenes.dense.camera = scenes.even.camera;
+  scenes.uneven = uneven(scenes.dense);
+  return scenes;
+}
+
+Trace depth_trace(traces::Scene scene, double side) {
+  for (traces::Surfel& surfel : scene.surfels) surfel.radius *= static_cast<float>(0.5 * side);
+  const std::vector<traces::VertexWeights> weights(scene.surfels.size());
+  Trace trace = traces::splat_trace({scene.surfels, weights}, traces::view_of(scene.camera, scene.frame),
+                                    scene.splatting, {});
+  std::erase_if(trace.commands, [](const Command& command) {
+    const Draw* draw = std::get_if<Draw>(&command);
+    return draw != nullptr && draw->state.color_write;
+  });
+  return trace;
+}
+
 std::vector<DepthImage> depth_images(const traces::Scene& scene, std::span<const double> sides,
                                      const VisibleSurface& surface, const Machine& machine) {
   const kernels::View view = traces::view_of(scene.camera, scene.frame);
   const double most = scene.splatting.depth_offset + mean_radius(scene);
   std::vector<DepthImage> images;
   for (const double side : sides) {
-    DepthImage image{side, draw_quads(scene, side, machine), 0, {}};
+    FrameRun run = run_frame(depth_trace(scene, side), machine, Fidelity::functional);
+    DepthImage image{side, std::move(run.rendered.frame), 0, {}};
     for (int y = 0; y < surface.height; ++y) {
       for (int x = 0; x < surface.width; ++x) {
         if (!is_inside(surface, x, y)) continue;
@@ -101,10 +107,8 @@ std::vector<DepthImage> depth_images(const traces::Scene& scene, std::span<const
 }
 
 void reproduce_figure3(Findings& findings, const Progress& progress) {
-  const traces::Scene even = knot(kSurfels);
-  traces::Scene dense = knot(kDenseSurfels);
-  dense.camera = even.camera;
-  const VisibleSurface surface = visible_surface(dense);
+  const Figure3Scenes scenes = figure3_scenes();
+  const VisibleSurface surface = visible_surface(scenes.dense);
   if (progress) progress(0.7);
 
   findings.report().heading("Fig. 3: the depth image of visibility splatting");
@@ -114,9 +118,9 @@ void reproduce_figure3(Findings& findings, const Progress& progress) {
             .log_y = true};
   nlohmann::ordered_json results;
   findings.say(fmt::format("{:<6}{:<8}{:>8} {:>8} {:>9}\n", "fig3", "surfels", "side, h", "holes", "inside"));
-  for (const auto& [name, scene] : {std::pair("even", even), std::pair("uneven", uneven(dense))}) {
+  for (const auto& [name, scene] : {std::pair("even", &scenes.even), {"uneven", &scenes.uneven}}) {
     const std::vector<DepthImage> images =
-        depth_images(scene, kSides, surface, machine::load("geforce4-ti4400"));
+        depth_images(*scene, kSides, surface, machine::load("geforce4-ti4400"));
     std::vector<Findings::Picture> pictures;
     Plot::Series series{name, {}, {}};
     auto list = nlohmann::ordered_json::array();

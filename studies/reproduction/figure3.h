@@ -7,9 +7,20 @@
 #include "studies/image_io.h"
 #include "studies/splat_fragments.h"
 #include "studies/study.h"
+#include "traces/scene.h"
 
 // The depth image of visibility splatting (Ren 2002, section 5.1, Fig. 3), which must have no holes.
 namespace splatscope::studies {
+
+struct Figure3Scenes {
+  traces::Scene even;    // a knot
+  traces::Scene uneven;  // as many surfels of it at random, as a scanner might leave them
+  traces::Scene dense;   // many more, in the same view: what is there
+};
+Figure3Scenes figure3_scenes();
+
+// The first pass alone, with quads of `side` h.
+Trace depth_trace(traces::Scene scene, double side);
 
 // The depth image of one size of quads, against the surface itself.
 struct DepthImage {

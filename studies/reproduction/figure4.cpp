@@ -29,20 +29,6 @@ void add_square(const glm::dvec3& center, int columns, int rows, const glm::vec3
   }
 }
 
-// The scene that the paper draws in section: surface A, beside the camera's axis, hides a part of surface B.
-// Camera and sizes are a reconstruction.
-traces::Scene two_surfaces() {
-  traces::Scene scene = traces::parse_scene(
-      fmt::format("[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_y_degrees = 70\nnear = 1\nfar = 20\n"
-                  "[splatting]\ndepth_offset = {}\n",
-                  kSpacing),
-      "two-surfaces.toml");
-  scene.surfels.clear();
-  add_square({1.4, 0.9, 4}, kColumnsOfA, kColumnsOfA, {1, 0.75, 0.35}, scene.surfels);
-  add_square({0, 0, 7}, kColumnsOfB, kColumnsOfB, {0.4, 0.65, 1}, scene.surfels);
-  return scene;
-}
-
 constexpr int kRow = 150;               // of the pictures: through A
 constexpr int kSpacingsInSection = 12;  // z_t, about as large as the paper draws it
 
@@ -79,8 +65,22 @@ Plot section(const std::string& title, const traces::Scene& scene, const Frame& 
 
 }  // namespace
 
+// The scene that the paper draws in section: surface A, beside the camera's axis, hides a part of surface B.
+// Camera and sizes are a reconstruction.
+traces::Scene figure4_scene() {
+  traces::Scene scene = traces::parse_scene(
+      fmt::format("[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_y_degrees = 70\nnear = 1\nfar = 20\n"
+                  "[splatting]\ndepth_offset = {}\n",
+                  kSpacing),
+      "two-surfaces.toml");
+  scene.surfels.clear();
+  add_square({1.4, 0.9, 4}, kColumnsOfA, kColumnsOfA, {1, 0.75, 0.35}, scene.surfels);
+  add_square({0, 0, 7}, kColumnsOfB, kColumnsOfB, {0.4, 0.65, 1}, scene.surfels);
+  return scene;
+}
+
 void reproduce_figure4(Findings& findings, const Progress& progress) {
-  const traces::Scene scene = two_surfaces();
+  const traces::Scene scene = figure4_scene();
   const Machine machine = machine::load("geforce4-ti4400");
   const VisibleSurface surface = visible_surface(scene);
   const traces::CapturedWeights weights = traces::capture_weights(

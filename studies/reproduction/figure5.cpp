@@ -8,15 +8,6 @@
 namespace splatscope::studies {
 namespace {
 
-// The paper's model and view are not known. A knot has silhouettes before surfaces of its own everywhere; few
-// surfels and a wide angle close by make z_t several pixels at the picture's edge.
-traces::Scene knot() {
-  return traces::parse_scene(
-      "[surfels]\ngenerator = \"torus-knot\"\ncount = 20000\n"
-      "[camera]\neye = [0.2, 0.3, 1.5]\ntarget = [0, 0, 0]\nfov_y_degrees = 70\n",
-      "knot.toml");
-}
-
 // z_t in spacings, from too small to too large.
 constexpr double kOffsets[] = {0.03, 0.06, 0.12, 0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 
@@ -76,6 +67,15 @@ Plot plot_of(const std::vector<OffsetRow>& rows) {
 
 }  // namespace
 
+// The paper's model and view are not known. A knot has silhouettes before surfaces of its own everywhere; few
+// surfels and a wide angle close by make z_t several pixels at the picture's edge.
+traces::Scene figure5_scene() {
+  return traces::parse_scene(
+      "[surfels]\ngenerator = \"torus-knot\"\ncount = 20000\n"
+      "[camera]\neye = [0.2, 0.3, 1.5]\ntarget = [0, 0, 0]\nfov_y_degrees = 70\n",
+      "knot.toml");
+}
+
 std::vector<OffsetRow> sweep_offset(const traces::Scene& scene, std::span<const double> spacings,
                                     const traces::CapturedWeights& weights, const Machine& machine,
                                     const VisibleSurface& surface, const Progress& progress) {
@@ -91,7 +91,7 @@ std::vector<OffsetRow> sweep_offset(const traces::Scene& scene, std::span<const 
 }
 
 void reproduce_figure5(Findings& findings, const Progress& progress) {
-  const traces::Scene scene = knot();
+  const traces::Scene scene = figure5_scene();
   const Machine machine = machine::load("geforce4-ti4400");
   const VisibleSurface surface = visible_surface(scene);
   const traces::CapturedWeights weights = traces::capture_weights(
