@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "studies/frame_cost.h"
 #include "studies/measure.h"
-#include "studies/peak_memory.h"
 #include "studies/reproduction/depth_offset.h"
 #include "studies/reproduction/figure10.h"
 #include "studies/reproduction/figure3.h"
@@ -20,37 +20,19 @@ constexpr std::string_view kMachines[] = {"geforce4-ti4400", "radeon-8500"};
 constexpr std::string_view kTable1[] = {"checkerboard-no-ewa", "checkerboard-ewa-per-pixel",
                                         "checkerboard-ewa-per-surfel"};
 
-struct Timed {
-  std::optional<sim::Result> timing;
-  double seconds = 0;  // least
-  double megabytes = 0;
-};
-
-Timed time_run(const Trace& trace, const Machine& machine, Fidelity fidelity, int repetitions) {
-  Timed timed;
-  for (int i = 0; i < (fidelity == Fidelity::referee ? 1 : repetitions); ++i) {
-    const bool is_measured = restart_peak_memory();
-    FrameRun run = run_frame(trace, machine, fidelity);
-    timed.seconds = i == 0 ? run.host_seconds : std::min(timed.seconds, run.host_seconds);
-    timed.timing = std::move(run.timing);
-    if (is_measured) timed.megabytes = static_cast<double>(peak_memory()) / 1e6;
-  }
-  return timed;
-}
-
 FidelityRow row_of(const FidelityFrame& frame, std::string_view machine, Fidelity fidelity,
-                   const Timed& timed) {
+                   const FrameCost& cost) {
   FidelityRow row;
   row.scene = frame.scene;
   row.resolution = frame.resolution;
   row.machine = machine;
   row.fidelity = fidelity;
-  row.host_seconds = timed.seconds;
-  row.peak_megabytes = timed.megabytes;
-  if (!timed.timing) return row;
-  row.cycles = timed.timing->cycles;
-  row.cycles_plus_minus = timed.timing->cycles_plus_minus;
-  for (const sim::UnitBooks& books : timed.timing->units)
+  row.host_seconds = cost.seconds;
+  row.peak_megabytes = cost.megabytes;
+  if (!cost.timing) return row;
+  row.cycles = cost.timing->cycles;
+  row.cycles_plus_minus = cost.timing->cycles_plus_minus;
+  for (const sim::UnitBooks& books : cost.timing->units)
     row.units.push_back({books.name, static_cast<double>(books.busy) / static_cast<double>(row.cycles)});
   return row;
 }
@@ -219,7 +201,8 @@ std::vector<FidelityRow> fidelity_rows(const FidelityFrame& frame, int repetitio
     const Trace trace = frame.record(machine);
     const std::size_t first = rows.size();
     for (const Fidelity fidelity : kFidelityLadder) {
-      rows.push_back(row_of(frame, machine_name, fidelity, time_run(trace, machine, fidelity, repetitions)));
+      const int runs = fidelity == Fidelity::referee ? 1 : repetitions;
+      rows.push_back(row_of(frame, machine_name, fidelity, cost_of(trace, machine, fidelity, runs)));
       if (fidelity == Fidelity::sampled) add_seeds(trace, machine, rows.back());
       if (progress)
         progress(static_cast<double>(rows.size()) /

@@ -135,13 +135,12 @@ TEST(PeakMemory, GrowsWithWhatIsTakenAndStartsAgain) {
   GTEST_SKIP() << "a sanitizer's own memory grows with the program's";
 #endif
   if (!restart_peak_memory()) GTEST_SKIP() << "the system does not reset the peak";
-  const std::size_t before = peak_memory();
-  constexpr std::size_t kBytes = 64 << 20;
-  std::vector<char>(kBytes, 1).back() = 2;
-  // The system counts in batches of pages.
-  EXPECT_NEAR(static_cast<double>(peak_memory()), static_cast<double>(before + kBytes), 4 << 20);
+  constexpr double kBatch = 4;  // MB: the system counts in batches of pages
+  const double before = peak_megabytes();
+  std::vector<char>(64'000'000, 1).back() = 2;
+  EXPECT_NEAR(peak_megabytes(), before + 64, kBatch);
   ASSERT_TRUE(restart_peak_memory());
-  EXPECT_NEAR(static_cast<double>(peak_memory()), static_cast<double>(before), 4 << 20);
+  EXPECT_NEAR(peak_megabytes(), before, kBatch);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "studies/frame_cost.h"
 #include "studies/peak_memory.h"
-#include "studies/run.h"
 
 namespace splatscope::studies {
 namespace {
@@ -15,31 +15,6 @@ namespace {
 constexpr std::array kSides = {100, 178, 316, 562, 1000};
 constexpr int kRunsOfSurfels = 300000;  // small frames run several times
 constexpr int kMostRuns = 5;
-
-// Memory since a certain moment.
-class MemoryMeter {
- public:
-  double peak_megabytes() const {
-    return is_measured_ ? (static_cast<double>(peak_memory()) - static_cast<double>(before_)) / 1e6 : 0;
-  }
-  void restart_peak() { is_measured_ = restart_peak_memory(); }
-
- private:
-  bool is_measured_ = restart_peak_memory();
-  std::size_t before_ = peak_memory();
-};
-
-FrameCost cost_of(const Trace& trace, const Machine& machine, Fidelity fidelity, int runs,
-                  MemoryMeter& memory) {
-  memory.restart_peak();
-  FrameCost cost;
-  for (int i = 0; i < runs; ++i) {
-    const double seconds = run_frame(trace, machine, fidelity).host_seconds;
-    cost.seconds = i == 0 ? seconds : std::min(cost.seconds, seconds);
-  }
-  cost.megabytes = memory.peak_megabytes();
-  return cost;
-}
 
 constexpr int kWarmUpSide = 64;     // of a frame before: it touches the code and the threads' buffers
 constexpr double kPaperSide = 256;  // surfels; of the plane that the default camera looks at
@@ -61,15 +36,21 @@ GrowthRow row_of(int side, const Machine& machine) {
   scene.camera.near *= scale;
   scene.camera.far *= scale;
   const int surfels = side * side;
-  MemoryMeter memory;
+  const bool is_measured = restart_peak_memory();
+  const double before = peak_megabytes();
   const Trace trace = traces::record(scene, machine.numbers).trace;
   const int runs = std::clamp(kRunsOfSurfels / surfels, 1, kMostRuns);
   GrowthRow row;
   row.surfels = surfels;
-  row.trace_megabytes = memory.peak_megabytes();
-  row.functional = cost_of(trace, machine, Fidelity::functional, runs, memory);
-  row.sampled = cost_of(trace, machine, Fidelity::sampled, runs, memory);
-  row.cycle = cost_of(trace, machine, Fidelity::cycle, runs, memory);
+  if (is_measured) row.trace_megabytes = peak_megabytes() - before;
+  const auto cost = [&](Fidelity fidelity) {
+    FrameCost cost = cost_of(trace, machine, fidelity, runs);
+    if (is_measured) cost.megabytes -= before;
+    return cost;
+  };
+  row.functional = cost(Fidelity::functional);
+  row.sampled = cost(Fidelity::sampled);
+  row.cycle = cost(Fidelity::cycle);
   return row;
 }
 

@@ -3,18 +3,13 @@
 #include <span>
 #include <vector>
 
+#include "studies/frame_cost.h"
 #include "studies/study.h"
 
 namespace splatscope::studies {
 
-// Of one fidelity.
-struct FrameCost {
-  double seconds = 0;    // the least of some runs
-  double megabytes = 0;  // in memory at most, the trace included; 0: the system does not tell
-};
-
 // What a frame of so many surfels costs the host. Four pixels a surfel, as in Table 1. Memory is that beyond
-// what the process held before.
+// what the process held before; 0: the system does not tell.
 struct GrowthRow {
   int surfels = 0;
   double trace_megabytes = 0;  // while it is recorded

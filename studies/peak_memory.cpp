@@ -14,11 +14,11 @@ bool restart_peak_memory() {
   return static_cast<bool>(file.flush());
 }
 
-std::size_t peak_memory() {
+double peak_megabytes() {
   std::ifstream file("/proc/self/status");
   for (std::string key; file >> key; file.ignore(256, '\n')) {
-    std::size_t kibibytes = 0;
-    if (key == "VmHWM:" && file >> kibibytes) return kibibytes * 1024;
+    double kibibytes = 0;
+    if (key == "VmHWM:" && file >> kibibytes) return kibibytes * 1024 / 1e6;
   }
   return 0;
 }

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "studies/run.h"
+
+namespace splatscope::studies {
+
+// What a frame costs the host, and its time.
+struct FrameCost {
+  double seconds = 0;                 // function and timing: the least of some runs
+  double megabytes = 0;               // of the process in memory at most; 0: the system does not tell
+  std::optional<sim::Result> timing;  // absent: functional
+};
+
+// Runs the frame of `trace` `runs` times, at least once.
+FrameCost cost_of(const Trace& trace, const Machine& machine, Fidelity fidelity, int runs);
+
+}  // namespace splatscope::studies
