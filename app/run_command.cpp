@@ -15,6 +15,7 @@
 #include "studies/run.h"
 #include "studies/run_files.h"
 #include "studies/run_observers.h"
+#include "studies/run_results.h"
 #include "traces/output_files.h"
 
 namespace splatscope::app {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "studies/peak_memory.h"
+#include "studies/run_results.h"
 
 namespace splatscope::studies {
 namespace {

@@ -1,180 +1,27 @@
 #include "studies/run.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_invoke.h>
 
 #include <exception>
 #include <future>
 
 #include "model/error.h"
-#include "model/isa/program.h"
 #include "sim/fidelity/sampled.h"
 #include "sim/fidelity/throughput.h"
 #include "studies/measure.h"
 #include "studies/reference_comparison.h"
-#include "studies/report/run_report.h"
-#include "studies/roofline.h"
-#include "studies/run_files.h"
 #include "studies/work_queue.h"
-#include "traces/output_files.h"
 #include "traces/scene_text.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::studies {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {{"functional", Fidelity::functional},
                                                                  {"throughput", Fidelity::throughput},
                                                                  {"sampled", Fidelity::sampled},
                                                                  {"cycle", Fidelity::cycle},
                                                                  {"referee", Fidelity::referee}};
-
-Json frames_json(const sim::Result& timing) {
-  Json out = Json::array();
-  for (const sim::Cycle cycles : timing.frame_cycles) {
-    const double seconds = timing.seconds_of(cycles);
-    Json frame = {{"cycles", cycles}, {"milliseconds", 1000 * seconds}, {"frames_per_second", 1 / seconds}};
-    // Both of the whole run; an estimate has no events.
-    if (timing.cycles_plus_minus > 0) frame["cycles_plus_minus"] = timing.cycles_plus_minus;
-    if (timing.event_hash != 0) frame["event_hash"] = fmt::format("{:016x}", timing.event_hash);
-    out.push_back(std::move(frame));
-  }
-  return out;
-}
-
-// With the names of the pictures.
-Json frames_json(const FrameRun& run, std::size_t frames) {
-  Json out = run.timing ? frames_json(*run.timing) : Json(std::vector<Json>(frames, Json::object()));
-  for (std::size_t i = 0; i < frames; ++i) out[i]["picture"] = picture_name(i, frames);
-  return out;
-}
-
-Json units_json(const sim::Result& timing) {
-  Json units = Json::array();
-  for (const sim::UnitBooks& books : timing.units) {
-    Json blocked_by = Json::object();
-    for (const auto& [who, cycles] : books.blocked_by) blocked_by[who] = cycles;
-    units.push_back({{"name", books.name},
-                     {"busy", books.busy},
-                     {"starved", books.starved},
-                     {"blocked", books.blocked},
-                     {"idle", books.idle},
-                     {"blocked_by", blocked_by}});
-  }
-  return units;
-}
-
-Json left_out_json(const sim::Result& timing) {
-  Json out = Json::array();
-  for (const sim::UnitLeftOut& unit : timing.units_left_out)
-    out.push_back({{"name", unit.name}, {"why", unit.why}});
-  return out;
-}
-
-struct Total {
-  std::string_view name, unit, what;
-  std::uint64_t RenderCounters::*value;
-};
-constexpr Total kTotals[] = {
-    {"vertices", "vertices", "shaded", &RenderCounters::vertices},
-    {"triangles", "triangles", "as indexed", &RenderCounters::triangles},
-    {"triangles_without_coverage", "triangles", "that cover no pixel centre",
-     &RenderCounters::triangles_without_coverage},
-    {"triangles_outside_frustum", "triangles", "wholly outside one clip plane",
-     &RenderCounters::triangles_outside},
-    {"triangles_behind_near", "triangles", "before the near plane or behind the eye",
-     &RenderCounters::triangles_behind},
-    {"triangles_not_finite", "triangles", "with a NaN or an infinity in a position: dropped",
-     &RenderCounters::triangles_not_finite},
-    {"triangles_back_facing", "triangles", "dropped by the cull mode",
-     &RenderCounters::triangles_back_facing},
-    {"triangles_clipped", "triangles", "cut by a clip plane", &RenderCounters::triangles_clipped},
-    {"quads", "quads", "2x2 pixels with coverage", &RenderCounters::quads},
-    {"fragments", "pixels", "covered, each triangle by itself", &RenderCounters::fragments},
-    {"fragments_passed", "pixels", "of these, those that passed the depth test",
-     &RenderCounters::fragments_passed},
-};
-
-Json counters_json(const RenderCounters& counters) {
-  Json out;
-  for (const Total& total : kTotals) out[std::string(total.name)] = counters.*total.value;
-  return out;
-}
-
-// The counters as the statistics of the units stand there, with unit and meaning.
-Json totals_json(const RenderCounters& counters) {
-  Json out = Json::array();
-  for (const Total& total : kTotals) {
-    out.push_back(
-        {{"name", total.name}, {"value", counters.*total.value}, {"unit", total.unit}, {"what", total.what}});
-  }
-  return out;
-}
-
-Json statistics_json(const sim::Result& timing) {
-  Json out = Json::array();
-  for (const sim::UnitStatistic& s : timing.statistics) {
-    out.push_back(
-        {{"of", s.unit_name}, {"name", s.name}, {"value", s.value}, {"unit", s.unit}, {"what", s.what}});
-  }
-  return out;
-}
-
-// A figure that no file can hold, an infinite PSNR, is null.
-Json reference_json(const Comparison& c) {
-  return {{"psnr_decibels", c.psnr},
-          {"surface_pixels", c.surface_pixels},
-          {"psnr_off_edges_decibels", c.psnr_off_edges},
-          {"pixels_off_edges", c.pixels_off_edges},
-          {"worst", c.worst},
-          {"pixels_over_8", c.over_8},
-          {"inside_pixels", c.inside_pixels},
-          {"holes", c.holes},
-          {"rounded_to_black", c.rounded_to_black}};
-}
-
-Json mesh_json(const traces::MeshCounts& mesh) {
-  return {{"triangles", mesh.triangles},
-          {"triangles_not_finite", mesh.triangles_not_finite},
-          {"triangles_out_of_range", mesh.triangles_out_of_range},
-          {"triangles_degenerate", mesh.triangles_degenerate},
-          {"normals_computed", mesh.normals_computed},
-          {"textures_unreadable", mesh.textures_unreadable}};
-}
-
-Json blocks_json(const traces::BlockCounts& blocks) {
-  return {{"drawn", blocks.blocks},
-          {"surfels_by_level", blocks.surfels_by_level},
-          {"surfels_outside_frustum", blocks.outside_frustum},
-          {"surfels_facing_away", blocks.facing_away}};
-}
-
-Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped,
-                  const traces::EstimateCounts& estimated) {
-  return {{"drawn", recorded.surfels},
-          {"normals_estimated", estimated.normals},
-          {"radii_estimated", estimated.radii},
-          {"blocks", blocks_json(recorded.blocks)},
-          {"weights_captured", recorded.weights_captured},
-          {"weights_at_edges", recorded.weights_at_edges},
-          {"weights_by_default", recorded.weights_by_default},
-          {"weights_outside_box", recorded.weights_outside_box},
-          {"skipped",
-           {{"not_finite", skipped.not_finite},
-            {"zero_radius", skipped.zero_radius},
-            {"duplicate", skipped.duplicate},
-            {"zero_normal", skipped.zero_normal}}}};
-}
-
-Json volume_json(const traces::VolumeCounts& counts) {
-  return {{"splats", counts.splats},
-          {"flat_splats", counts.flat},
-          {"left_out", counts.left_out},
-          {"sheets", counts.sheets},
-          {"vertex_bytes", counts.vertex_bytes}};
-}
 
 }  // namespace
 
@@ -356,92 +203,6 @@ GrayImage depth_of(const Frame& frame) {
     image.pixels[pixel] = static_cast<float>(frame.depth_value(pixel));
   }
   return image;
-}
-
-nlohmann::ordered_json timing_json(const sim::Result& timing) {
-  return {{"frames", frames_json(timing)},
-          {"units", units_json(timing)},
-          {"units_left_out", left_out_json(timing)}};
-}
-
-nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
-                                  const FrameRun& run) {
-  Json results;
-  results["input"] = input.name;
-  results["machine"] = machine.name;
-  results["fidelity"] = name(fidelity);
-  results["frames"] = frames_json(run, frame_ends(input.trace).size());
-  results["programs"] = Json::array();
-  for (const ShaderText& program : input.trace.programs) {
-    results["programs"].push_back(
-        {{"name", program.name}, {"slots", isa::slot_count(isa::load(program.text, program.name))}});
-  }
-  results["units"] = run.timing ? units_json(*run.timing) : Json::array();
-  results["units_left_out"] = run.timing ? left_out_json(*run.timing) : Json::array();
-  results["counters"] = counters_json(run.rendered.counters);
-  results["totals"] = totals_json(run.rendered.counters);
-  if (run.timing) {
-    results["statistics"] = statistics_json(*run.timing);
-    results["roofline"] = json_of(ceilings(machine, *run.timing));
-  }
-  if (!run.heat_maps.empty()) results["heat_maps"] = json_of(run.heat_maps);
-  if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped, input.estimated);
-  if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
-  if (input.volume) results["volume"] = volume_json(*input.volume);
-  if (run.reference) results["reference"] = reference_json(run.reference->comparison);
-  results["host"] = {{"seconds", run.host_seconds}};
-  if (run.timing) {
-    results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.timing_seconds;
-  }
-  return results;
-}
-
-OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder) {
-  return [folder, frames = frame_ends(trace).size(), number = std::size_t{0}](const Frame& frame) mutable {
-    if (number + 1 < frames) write_png(picture_of(frame), folder / picture_name(number, frames));
-    ++number;
-  };
-}
-
-namespace {
-
-void write_reference(const FrameRun& run, const std::filesystem::path& folder) {
-  const Image reference = picture_of(run.reference->picture);
-  write_exr(reference, folder / "reference.exr");
-  write_png(reference, folder / "reference.png");
-  write_png(difference_picture(run.rendered.frame, run.reference->picture), folder / "difference.png");
-}
-
-std::vector<std::string> result_names(const Input& input, const FrameRun& run) {
-  std::vector<std::string> names{"frame.exr", "depth.exr", "results.json", "report.html"};
-  const std::size_t frames = frame_ends(input.trace).size();
-  for (std::size_t i = 0; i < frames; ++i) names.push_back(picture_name(i, frames));
-  if (run.reference) names.insert(names.end(), {"reference.exr", "reference.png", "difference.png"});
-  for (const HeatMap& map : run.heat_maps) names.push_back(map.name + ".exr");
-  return names;
-}
-
-}  // namespace
-
-void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
-               const std::filesystem::path& folder) {
-  nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
-  const std::vector<std::string> files = result_names(input, run);
-  results["files"] = files;
-  const Image picture = picture_of(run.rendered.frame);
-  remove_earlier_results(folder, files);
-  // Side by side: to compress them takes longer than many a frame.
-  oneapi::tbb::parallel_invoke(
-      [&] { write_exr(picture, folder / "frame.exr"); }, [&] { write_png(picture, folder / "frame.png"); },
-      [&] { write_exr(depth_of(run.rendered.frame), folder / "depth.exr"); },
-      [&] {
-        if (run.reference) write_reference(run, folder);
-      },
-      [&] {
-        for (const HeatMap& map : run.heat_maps) write_exr(map.image, folder / (map.name + ".exr"), "Y");
-      },
-      [&] { run_report(input, machine, run, results).write(folder / "report.html"); });
-  traces::write_file(folder / "results.json", results.dump(1) + "\n");
 }
 
 }  // namespace splatscope::studies

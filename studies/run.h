@@ -1,8 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -98,24 +96,5 @@ Comparison compare(const Frame& frame, const Trace& trace, const Machine& machin
 // The picture with its alpha set to 1, and the depths.
 Image picture_of(const Frame& frame);
 GrayImage depth_of(const Frame& frame);
-
-// The figures of a time: `frames`, `units` and `units_left_out`, as the documentation of result files lists
-// them.
-nlohmann::ordered_json timing_json(const sim::Result& timing);
-
-// The figures of a run, as the documentation of result files lists them.
-nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
-                                  const FrameRun& run);
-
-// Writes the frames of `trace` before its last one as frame-000.png, frame-001.png, ... into `folder`, which
-// exists.
-OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder);
-
-// Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html into `folder`,
-// which exists; where the run has a reference also reference.exr, reference.png and difference.png, and into
-// the results how far the last frame is from it; its heat maps as NAME.exr. What an earlier run wrote there,
-// and this one does not, goes away.
-void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
-               const std::filesystem::path& folder);
 
 }  // namespace splatscope::studies

@@ -8,6 +8,7 @@
 #include "model/error.h"
 #include "studies/measure.h"
 #include "studies/processes.h"
+#include "studies/run_results.h"
 
 namespace splatscope::studies {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "model/error.h"
 #include "studies/processes.h"
+#include "studies/run_results.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::studies {
