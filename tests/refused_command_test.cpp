@@ -1,0 +1,120 @@
+#include "command_line.h"
+
+// Command lines that are refused before any work, and leave every file as it was.
+namespace splatscope::tests {
+namespace {
+
+// As /dev/stdout is where the shell made a file of it: to write there by a new file would put it in the place
+// of the link.
+TEST(CommandLine, AStandardStreamIsNoPlaceForAFile) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  for (const char* stream : {"/proc/self/fd/1", "/proc/self/fd/2"}) {
+    const auto link = folder.path() / "stream";
+    std::filesystem::create_symlink(stream, link);
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"record", "small.toml", "-o", "stream"},
+          {"run", "small.toml", "--counters", "stream", "--out", "o"}}) {
+      const Outcome outcome = run_program(command, folder.path());
+      expect_refused(outcome, "stream: is standard input, output or error of this run");
+      EXPECT_TRUE(std::filesystem::is_symlink(link)) << command[0];
+    }
+    std::filesystem::remove(link);
+  }
+}
+
+// What an option is about must be there, and of values a key has one.
+TEST(CommandLine, OptionsWithoutAnEffectAreRefused) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const auto refused = [&](const char* command, const std::vector<std::string>& more,
+                           const std::string& part) {
+    std::vector<std::string> arguments{command, "small.toml", "--out", "o"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_refused(run_program(arguments, folder.path()), part);
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
+  };
+  refused("run", {"--timeline-window", "1:2"}, "--timeline-window requires --timeline");
+  refused("run", {"--pipeline-window", "1:2"}, "--pipeline-window requires --pipeline");
+  refused("run", {"--counters-every", "10"}, "--counters-every requires --counters");
+  refused("sweep", {"--sweep", "vertex.units=1", "--sweep", "vertex.units=2"}, "vertex.units is given twice");
+  refused("sweep", {"--sweep", "vertex.units=1", "--set", "vertex.units=2"}, "vertex.units is swept");
+  refused("sweep", {"--sweep", "vertex.units=99"}, "--sweep: vertex.units is out of range (99)");
+}
+
+TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  folder.file("wrong.toml", "[surfel]\n");
+  folder.file("taken", "a file where a folder is wanted");
+  const auto before = folder.names();
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    expect_refused(run_program(arguments, folder.path()), part);
+    EXPECT_EQ(folder.names(), before);
+  };
+  refused({"run", "wrong.toml", "--out", "made"}, "wrong.toml:1: ");
+  refused({"run", "none.trace", "--out", "made"}, "none.trace: ");
+  refused({"run", "small.toml", "--out", "taken"}, "taken: ");
+  refused({"run", "small.toml", "--out", "taken/below"}, "taken/below: ");
+  refused({"run", "small.toml", "--fidelity", "exact"}, "--fidelity: ");
+  refused({"run", "small.toml", "--machine", "voodoo"}, "voodoo");
+  refused({"run", "small.toml", "--set", "vertex.unts=2"}, "vertex.unts");
+  refused({"run", "small.toml", "--set", "vertex.units=0"}, "vertex.units");
+  refused({"reproduce", "table7"}, "table7");
+  refused({"reproduce", "--out", "taken"}, "taken: ");
+  refused({"study", "vertex-dates"}, "vertex-dates");
+  refused({"study", "vertex-data", "--out", "taken"}, "taken: ");
+}
+
+// No file of a command line is written over another: exit 2 before any work, and all as it was.
+TEST(CommandLine, FilesOfOneNameAreRefused) {
+  const ScratchFolder folder;
+  folder.file("in.toml", kSmallScene);
+  folder.file("square.obj", kSquare);
+  folder.file("a.vs", "vs_1_1\nmov oPos, v0\n");
+  std::filesystem::create_hard_link(folder.path() / "in.toml", folder.path() / "hard.toml");
+  folder.file("m.toml", "base = \"radeon-8500\"\n");
+  folder.file("mesh.toml", "[surfels]\nfile = \"square.obj\"\n");
+  folder.file("volume.toml", "[volume]\nfile = \"v.nrrd\"\n");
+  folder.file("v.nrrd", "the scene's");
+  folder.file("named.toml", "[volume]\nfile = \"results.json\"\n");
+  folder.file("results.json", "the scene's");
+  const auto before = folder.names();
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    expect_refused(run_program(arguments, folder.path()), part);
+    EXPECT_EQ(folder.names(), before);
+    EXPECT_EQ(text_of(folder.path() / "in.toml"), kSmallScene);
+  };
+  refused({"record", "in.toml", "-o", "in.toml"}, "in.toml: is named by -o and by SCENE (in.toml)");
+  refused({"record", "in.toml", "-o", "hard.toml"}, "hard.toml: is named by -o and by SCENE (in.toml)");
+  refused({"record", "in.toml", "-o", "m.toml", "--machine", "m.toml"}, "by -o and by --machine");
+  refused({"sample", "square.obj", "-o", "square.obj"}, "by -o and by MESH");
+  refused({"shader", "assemble", "a.vs", "-o", "./a.vs"}, "by --out and by FILE (a.vs)");
+  refused({"shader", "disassemble", "a.vs", "-o", "a.vs"}, "by --out and by FILE (a.vs)");
+  refused({"record", "mesh.toml", "-o", "square.obj"},
+          "square.obj: is named by -o and by the scene (square.obj)");
+  refused({"record", "volume.toml", "-o", "./v.nrrd"}, "by -o and by the scene (v.nrrd)");
+  refused({"run", "mesh.toml", "--out", "o", "--counters", "square.obj"}, "by --counters and by the scene");
+  refused({"volume", "named.toml", "--out", "."}, "by a result in --out and by the scene");
+  refused({"sweep", "named.toml", "--sweep", "vertex.units=1,2", "--out", "."},
+          "by a result in --out and by the scene");
+  refused({"run", "in.toml", "--out", "o", "--counters", "in.toml"}, "by --counters and by INPUT");
+  refused({"run", "in.toml", "--out", "o", "--program", "splat_ewa.vs=a.vs", "--pipeline", "a.vs"},
+          "by --pipeline and by --program");
+  refused({"run", "in.toml", "--out", "o", "--counters", "same", "--timeline", "same"},
+          "same: is named by --counters and by --timeline");
+  for (const char* name : {"results.json", "frame.png", "overdraw.exr", "reference.png", "frame-012.png"})
+    refused({"run", "in.toml", "--out", "o", "--timeline", std::string("o/") + name},
+            "by --timeline and by a result in --out");
+  folder.file("results.json", kSmallScene);
+  const std::string results = text_of(folder.path() / "results.json");
+  expect_refused(
+      run_program({"sweep", "results.json", "--sweep", "vertex.units=1,2", "--out", "."}, folder.path()),
+      "by a result in --out and by INPUT");
+  expect_refused(run_program({"volume", "results.json", "--out", "."}, folder.path()),
+                 "by a result in --out and by SCENE");
+  EXPECT_EQ(text_of(folder.path() / "results.json"), results);
+}
+
+}  // namespace
+}  // namespace splatscope::tests

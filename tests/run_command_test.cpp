@@ -1,0 +1,257 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "command_line.h"
+#include "studies/image_io.h"
+#include "traces/trace_file.h"
+
+// What `run` prints and writes.
+namespace splatscope::tests {
+namespace {
+
+// Surfels left out are not among those whose normals and radii are estimated.
+TEST(CommandLine, WhatPointsLackIsEstimatedAndCounted) {
+  const ScratchFolder folder;
+  folder.file(
+      "points.ply",
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 nan 0\n");
+  folder.file("s.toml", "[surfels]\nfile = \"points.ply\"\n[frame]\nwidth = 16\nheight = 16\n");
+  const Outcome drawn =
+      run_program({"run", "s.toml", "--fidelity", "functional", "--out", "out"}, folder.path());
+  EXPECT_NE(drawn.out.find("4 surfels, 1 left out (1 not finite), 4 normals estimated, 4 radii estimated\n"),
+            std::string::npos)
+      << drawn.out << drawn.error;
+  const auto surfels = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"];
+  EXPECT_EQ(surfels["normals_estimated"], 4);
+  EXPECT_EQ(surfels["radii_estimated"], 4);
+}
+
+TEST(CommandLine, RunWritesItsResults) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const Outcome outcome = run_program({"run", "small.toml", "--out", "a/b"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(outcome.error, "") << "no progress bar on a pipe";
+  for (const char* name : {"frame.png", "frame.exr", "depth.exr", "results.json"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "a/b" / name)) << name;
+  const auto results = nlohmann::json::parse(text_of(folder.path() / "a/b/results.json"));
+  EXPECT_EQ(results["machine"], "geforce4-ti4400");
+  EXPECT_EQ(results["fidelity"], "cycle");
+  const auto& frame = results["frames"].at(0);
+  EXPECT_NEAR(frame["frames_per_second"].get<double>() * frame["milliseconds"].get<double>(), 1000, 1e-6);
+  EXPECT_EQ(frame["event_hash"].get<std::string>().size(), 16u);
+  for (const auto& unit : results["units"]) {
+    const std::uint64_t booked = unit["busy"].get<std::uint64_t>() + unit["starved"].get<std::uint64_t>() +
+                                 unit["blocked"].get<std::uint64_t>() + unit["idle"].get<std::uint64_t>();
+    EXPECT_EQ(booked, frame["cycles"]) << unit;
+  }
+  const std::string report = text_of(folder.path() / "a/b/report.html");
+  EXPECT_NE(report.find("Left out: texture, pixel and blend in 1 of 2 draws, as they write no colour."),
+            std::string::npos);
+}
+
+TEST(CommandLine, RunWritesATimelineAndCounters) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  std::vector<std::string> run = {"run",        "small.toml", "--out",      "a",
+                                  "--timeline", "t.json",     "--counters", "c.csv"};
+  EXPECT_EQ(run_program(run, folder.path()).status, 0);
+  EXPECT_GT(nlohmann::json::parse(text_of(folder.path() / "t.json")).at("traceEvents").size(), 100u);
+  EXPECT_EQ(text_of(folder.path() / "c.csv").substr(0, 6), "cycle,");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a", "c.csv", "small.toml", "t.json"}));
+  run.insert(run.end(), {"--fidelity", "functional"});
+  expect_refused(run_program(run, folder.path()), "--fidelity");
+}
+
+// The folder for the results is made first, and goes again where the run fails.
+TEST(CommandLine, ATimelineMayLieInANewFolder) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  std::vector<std::string> run{"run", "small.toml", "--out", "new/o", "--timeline", "new/o/t.json"};
+  const Outcome outcome = run_program(run, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "new/o/t.json"));
+  std::filesystem::remove_all(folder.path() / "new");
+  run[1] = "none.toml";
+  expect_refused(run_program(run, folder.path()), "none.toml");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
+}
+
+// It is read once.
+TEST(CommandLine, ASceneMayComeThroughAPipe) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const std::string command =
+      fmt::format("cd {} && cat small.toml | {} run /dev/stdin --fidelity functional --out o >said",
+                  folder.path().string(), SPLATSCOPE_PROGRAM);
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const auto results = nlohmann::json::parse(text_of(folder.path() / "o/results.json"));
+  EXPECT_EQ(results["surfels"]["drawn"], 16 * 16);
+}
+
+// A folder holds one run: pictures that an earlier one wrote and this one does not go away, and nothing else.
+TEST(CommandLine, ALaterRunTakesTheFolderOver) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  Trace frames;
+  frames.width = frames.height = 4;
+  frames.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}};
+  traces::write_trace(frames, folder.path() / "two.trace");
+  const auto names = [&] {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "o"))
+      found.push_back(entry.path().filename().string());
+    std::ranges::sort(found);
+    return found;
+  };
+  const std::vector<std::string> always{"depth.exr", "frame.exr", "frame.png", "report.html", "results.json"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), always.begin(), always.end());
+    std::ranges::sort(more);
+    return more;
+  };
+  ASSERT_EQ(run_program({"run", "two.trace", "--out", "o"}, folder.path()).status, 0);
+  EXPECT_EQ(names(), with({"frame-000.png"}));
+  ASSERT_EQ(
+      run_program({"run", "small.toml", "--out", "o", "--reference", "--heat-maps"}, folder.path()).status,
+      0);
+  EXPECT_EQ(names(), with({"cycles_per_tile.exr", "depth_fails.exr", "difference.png", "overdraw.exr",
+                           "reference.exr", "reference.png", "texel_fetches.exr"}));
+  ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
+  EXPECT_EQ(names(), with({}));
+  const std::vector<std::string> own{"frame-000.png", "frame-new.png", "overdraw.exr", "reference.png"};
+  for (const std::string& name : own) folder.file("o/" + name, "the user's");
+  ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
+  EXPECT_EQ(names(), with(own)) << "that no run wrote";
+  for (const char* other : {"{\"files\": [\"../small.toml\", \"small.toml\", 7]}", "[]", "no JSON"}) {
+    folder.file("o/results.json", other);
+    ASSERT_EQ(run_program({"run", "../small.toml", "--out", "."}, folder.path() / "o").status, 0) << other;
+    EXPECT_EQ(names(), with(own)) << other;
+  }
+}
+
+TEST(CommandLine, AReferenceThatCoversNothingIsSaidToBeNone) {
+  const ScratchFolder folder;
+  folder.file("away.toml",
+              "[surfels]\ncolumns = 4\nrows = 4\n[camera]\neye = [0, 6, 14]\ntarget = [0, 6, 28]\n"
+              "[frame]\nwidth = 32\nheight = 32\n");
+  const Outcome outcome = run_program(
+      {"run", "away.toml", "--reference", "--fidelity", "functional", "--out", "o"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NE(outcome.out.find("  against the reference: no pixel is covered\n"), std::string::npos)
+      << outcome.out;
+  const std::string report = text_of(folder.path() / "o/report.html");
+  EXPECT_NE(report.find("no pixel is covered"), std::string::npos);
+  EXPECT_EQ(report.find("nan dB"), std::string::npos);
+}
+
+// A library of pictures that is not there is told from one that does not load.
+TEST(CommandLine, PicturesWithoutTheirLibraryAreAnError) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const std::string program = (folder.path() / "splatscope").string();
+  std::filesystem::copy_file(SPLATSCOPE_PROGRAM, program);
+  const std::vector<std::string> run{"run", "small.toml", "--fidelity", "functional", "--out", "o"};
+  const Outcome missing = run_program(run, folder.path(), program);
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_NE(missing.error.find(", expected it beside the program\n"), std::string::npos) << missing.error;
+  folder.file("libopen_image_io_module.so", "no library");
+  const Outcome broken = run_program(run, folder.path(), program);
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_NE(broken.error.find("splatscope: OpenImageIO's libraries could not be loaded: "),
+            std::string::npos);
+  EXPECT_EQ(broken.error.find("beside the program"), std::string::npos) << broken.error;
+}
+
+// So that a script may give all fidelities the same options.
+TEST(CommandLine, EveryFidelityTakesASeed) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  for (const char* fidelity : {"functional", "throughput", "sampled", "cycle"}) {
+    const Outcome outcome = run_program(
+        {"run", "small.toml", "--seed", "7", "--fidelity", fidelity, "--out", "o"}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+  }
+}
+
+TEST(CommandLine, TraceOfASceneRunsAsTheScene) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  ASSERT_EQ(run_program({"record", "small.toml", "-o", "small.trace"}, folder.path()).status, 0);
+  ASSERT_EQ(run_program({"run", "small.toml", "--out", "a"}, folder.path()).status, 0);
+  ASSERT_EQ(run_program({"run", "small.trace", "--out", "b"}, folder.path()).status, 0);
+  for (const char* name : {"frame.png", "frame.exr", "depth.exr"})
+    EXPECT_TRUE(text_of(folder.path() / "a" / name) == text_of(folder.path() / "b" / name)) << name;
+  const auto frames = [&](const char* run) {
+    return nlohmann::json::parse(text_of(folder.path() / run / "results.json"))["frames"];
+  };
+  EXPECT_EQ(frames("a"), frames("b"));
+}
+
+// Red, then green, then the same again: two pictures before the last.
+TEST(CommandLine, EveryFrameOfATraceIsWritten) {
+  const ScratchFolder folder;
+  Trace trace;
+  trace.width = trace.height = 4;
+  trace.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}, Present{}};
+  traces::write_trace(trace, folder.path() / "three.trace");
+  for (const std::string fidelity : {"functional", "cycle"}) {
+    const Outcome run =
+        run_program({"run", "three.trace", "--out", "out", "--fidelity", fidelity}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.error;
+    const auto frames = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["frames"];
+    ASSERT_EQ(frames.size(), 3u);
+    const char* names[] = {"frame-000.png", "frame-001.png", "frame.png"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(frames[i]["picture"], names[i]);
+      EXPECT_EQ(frames[i].contains("cycles"), fidelity == "cycle");
+      const auto picture = studies::read_image(folder.path() / "out" / names[i]);
+      EXPECT_EQ(picture.at(3, 3), (std::array<float, 4>{i == 0 ? 1.0f : 0.0f, i == 0 ? 0.0f : 1.0f, 0, 1}));
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/frame-002.png"));
+    std::filesystem::remove_all(folder.path() / "out");
+  }
+}
+
+// A surfel that cannot be drawn is counted; one that is hard to draw is drawn, and nothing is left in the
+// frame but numbers.
+TEST(CommandLine, ExtremeSurfelsLeaveAFiniteFrame) {
+  const ScratchFolder folder;
+  folder.file(
+      "extreme.ply",
+      "ply\nformat ascii 1.0\nelement vertex 10\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float radius\nend_header\n"
+      "nan 0 0  0 0 1  1\n"  // not finite
+      "0 0 0  0 0 1  inf\n"  // not finite
+      "0 0 0  0 0 1  0\n"    // radius 0
+      "0 0 0  0 0 0  1\n"    // normal 0
+      "0 0 9  0 0 1  1\n"    // behind the eye
+      "0 0 5  0 0 1  1\n"    // on the eye
+      "0 0 4  0 1 0  3\n"    // across the near plane
+      "0 0 0  0 1 0  1\n"    // edge-on
+      "1e30 1e30 -1e30  1 1 1  1e30\n"
+      "0 0 0  1e-30 0 1e-30  1e-30\n");
+  for (const std::string algorithm : {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"}) {
+    folder.file("extreme.toml",
+                "[surfels]\nfile = \"extreme.ply\"\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n"
+                "[frame]\nwidth = 64\nheight = 48\n[splatting]\nalgorithm = \"" +
+                    algorithm + "\"\n");
+    for (const std::string numbers : {"unorm8", "float32"}) {
+      const Outcome outcome = run_program(
+          {"run", "extreme.toml", "--set", "numbers.frame=" + numbers, "--out", "out"}, folder.path());
+      ASSERT_EQ(outcome.status, 0) << outcome.error;
+      const auto skipped =
+          nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"]["skipped"];
+      EXPECT_EQ(skipped["not_finite"], 2);
+      EXPECT_EQ(skipped["zero_radius"], 1);
+      EXPECT_EQ(skipped["zero_normal"], 1);
+      for (const char* name : {"out/frame.exr", "out/depth.exr"})
+        for (const auto& pixel : studies::read_image(folder.path() / name).pixels)
+          for (float channel : pixel) ASSERT_TRUE(std::isfinite(channel)) << name << ' ' << algorithm;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace splatscope::tests
