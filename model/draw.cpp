@@ -228,7 +228,7 @@ class DrawStages {
   void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Room room,
                  Take take) {
     if (!setup.covers) return;
-    const bool sampled = record_ != Record::nothing && is_sampled(work_.triangles.size());
+    const bool sampled = record_ != Record::nothing && work_.is_sampled(work_.triangles.size());
     const bool noted = sampled || record_ == Record::everything;
     if (record_ != Record::nothing) work.tile_count += raster::tiles_touched(setup);
     for (int y = setup.top & ~1; y < setup.bottom; y += raster::kWindow) {

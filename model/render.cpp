@@ -94,6 +94,10 @@ class Renderer {
         rendered_(rendered),
         programs_(trace, options.formats),
         indices_(options.vertex_cache_entries) {
+    std::uint64_t triangles = 0;
+    for (const Command& command : commands)
+      if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
+    sampled_runs_apart_ = sampled_runs_apart(triangles);
     for (std::uint32_t i = 0; i < trace.surfaces; ++i)
       surfaces_.emplace_back(trace.width, trace.height, options.formats);
     output::clear(Clear{}, rendered.frame);
@@ -120,6 +124,7 @@ class Renderer {
                                 attributes_read(draw, pixel)};
     DrawWork work;
     work.command = static_cast<std::uint32_t>(command);
+    work.sampled_runs_apart = sampled_runs_apart_;
     Frame& target = draw.target == 0 ? rendered_.frame : surfaces_[draw.target - 1];
     render_draw(bindings, options_, indices_, target, work, rendered_.counters);
     if (options_.record != Record::nothing) rendered_.work.push_back(std::move(work));
@@ -138,6 +143,7 @@ class Renderer {
   std::vector<Frame> surfaces_;  // off-screen
   Programs programs_;
   Indices indices_;
+  std::uint32_t sampled_runs_apart_ = 1;
 };
 
 }  // namespace

@@ -248,46 +248,69 @@ TEST(Render, EverySimdTargetGivesTheSameBits) {
   });
 }
 
-// Of the triangles that are not sampled there is no quad; of the others, every tile that nothing was written
-// in before them.
-TEST(Render, SamplesOfTheWorkAreThoseOfAllOfIt) {
-  const Trace trace = many_triangles();
-  const DrawWork all = on_threads(trace, 1, Record::everything).work[0];
-  std::vector<QuadWork> sampled;
-  std::set<std::array<std::uint32_t, 2>> clear;
-  std::set<std::uint32_t> written;
-  auto quad = all.quads.begin();
+TEST(Render, SamplesAllOfASmallTraceAndFewRunsOfALargeOne) {
+  EXPECT_EQ(sampled_runs_apart(0), 1u);
+  EXPECT_EQ(sampled_runs_apart(16383), 1u);
+  EXPECT_EQ(sampled_runs_apart(16384), 2u);
+  EXPECT_EQ(sampled_runs_apart(262144), 32u);
+  EXPECT_EQ(sampled_runs_apart(100'000'000), 32u);
+}
+
+// The quads of sampled triangles, and the tiles in which these found all depth clear: {triangle, tile}.
+struct Samples {
+  std::vector<QuadWork> quads;
+  std::set<std::array<std::uint32_t, 2>> clear_tiles;
+};
+
+// Of a record of everything. `written`: the tiles with depth, before and after.
+Samples samples_of(const DrawWork& all, std::uint32_t width, std::set<std::uint32_t>& written) {
+  Samples samples;
+  const auto tile_of = [&](const QuadWork& quad) { return quad.y / 2u * (width / 4) + quad.x / 2u; };
+  std::span<const QuadWork> rest = all.quads;
   for (std::uint32_t i = 0; i < all.triangles.size(); ++i) {
-    const auto tile_of = [&](const QuadWork& of) { return of.y / 2u * (trace.width / 4) + of.x / 2u; };
-    const std::span quads(quad, all.triangles[i].quad_count);
-    quad += all.triangles[i].quad_count;
-    if (is_sampled(i)) {
-      sampled.insert(sampled.end(), quads.begin(), quads.end());
-      for (const QuadWork& each : quads)
-        if (!written.contains(tile_of(each))) clear.insert({i, tile_of(each)});
-    }
-    for (const QuadWork& each : quads)
-      if (each.passed != 0) written.insert(tile_of(each));
+    const std::span<const QuadWork> quads = rest.first(all.triangles[i].quad_count);
+    rest = rest.subspan(quads.size());
+    if (all.is_sampled(i)) samples.quads.insert(samples.quads.end(), quads.begin(), quads.end());
+    for (const QuadWork& quad : quads)
+      if (all.is_sampled(i) && !written.contains(tile_of(quad)))
+        samples.clear_tiles.insert({i, tile_of(quad)});
+    for (const QuadWork& quad : quads)
+      if (quad.passed != 0) written.insert(tile_of(quad));
   }
-  ASSERT_GT(written.size(), 2000u) << "of 2500 tiles";
-  ASSERT_GT(clear.size(), 500u);
-  ASSERT_GT(sampled.size(), 1500u);
-  const auto tiles_of = [](const DrawWork& work) {
-    std::set<std::array<std::uint32_t, 2>> tiles;
-    for (const ClearTile& tile : work.clear_tiles) tiles.insert({tile.triangle, tile.tile});
-    return tiles;
-  };
-  EXPECT_EQ(tiles_of(all), clear);
+  return samples;
+}
+
+void expect_samples(const Samples& samples, const DrawWork& work) {
+  std::set<std::array<std::uint32_t, 2>> tiles;
+  for (const ClearTile& tile : work.clear_tiles) tiles.insert({tile.triangle, tile.tile});
+  EXPECT_EQ(tiles, samples.clear_tiles);
+  EXPECT_TRUE(std::ranges::is_sorted(work.clear_tiles, {}, &ClearTile::triangle));
+  if (!work.samples_only) return;
+  EXPECT_EQ(listed(work.quads), listed(samples.quads));
+  EXPECT_TRUE(work.shaded_vertices.empty());
+}
+
+// Of all triangles there are the counts.
+TEST(Render, SamplesOfTheWorkAreThoseOfAllOfIt) {
+  Trace trace = many_triangles();
+  trace.commands.resize(7, trace.commands[0]);
+  const std::vector<DrawWork> all = on_threads(trace, 1, Record::everything).work;
+  std::vector<Samples> samples;
+  std::set<std::uint32_t> written;
+  for (const DrawWork& draw : all) samples.push_back(samples_of(draw, trace.width, written));
+  ASSERT_EQ(all[0].sampled_runs_apart, 4u);
+  ASSERT_GT(samples[0].clear_tiles.size(), 500u) << "of 2500 tiles";
+  ASSERT_GT(samples[0].quads.size(), 1500u);
   for (const std::size_t threads : {1u, 2u, 4u}) {
-    const DrawWork samples = on_threads(trace, threads, Record::samples).work[0];
-    EXPECT_TRUE(samples.samples_only);
-    EXPECT_TRUE(samples.shaded_vertices.empty());
-    ASSERT_EQ(samples.triangles.size(), all.triangles.size());
-    for (std::size_t i = 0; i < all.triangles.size(); ++i)
-      ASSERT_EQ(samples.triangles[i].quads_passed, all.triangles[i].quads_passed) << i;
-    EXPECT_EQ(listed(samples.quads), listed(sampled));
-    EXPECT_EQ(tiles_of(samples), clear);
-    EXPECT_TRUE(std::ranges::is_sorted(samples.clear_tiles, {}, &ClearTile::triangle));
+    const std::vector<DrawWork> some = on_threads(trace, threads, Record::samples).work;
+    for (std::size_t draw = 0; draw < all.size(); ++draw) {
+      expect_samples(samples[draw], all[draw]);
+      expect_samples(samples[draw], some[draw]);
+      EXPECT_TRUE(some[draw].samples_only);
+      ASSERT_EQ(some[draw].triangles.size(), all[draw].triangles.size());
+      for (std::size_t i = 0; i < all[draw].triangles.size(); ++i)
+        ASSERT_EQ(some[draw].triangles[i].quads_passed, all[draw].triangles[i].quads_passed) << i;
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <bit>
 #include <cstring>
 #include <fstream>
 #include <span>
@@ -135,6 +136,8 @@ WorkStream stream_of(std::string_view body) {
   stream.work.resize(reader.take_count(sizeof(std::uint32_t)));
   for (DrawWork& work : stream.work) {
     reader.take(work.command);
+    reader.take(work.sampled_runs_apart);
+    if (!std::has_single_bit(work.sampled_runs_apart)) throw std::out_of_range("work stream");
     reader.take(work.shaded_vertices);
     reader.take(work.triangles);
     reader.take(work.quads);
@@ -196,6 +199,7 @@ void WorkCache::write(const std::string& key, const WorkStream& stream) const {
   body.add(std::uint64_t{stream.work.size()});
   for (const DrawWork& work : stream.work) {
     body.add(work.command);
+    body.add(work.sampled_runs_apart);
     body.add(work.shaded_vertices);
     body.add(work.triangles);
     body.add(work.quads);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -45,12 +48,12 @@ struct ClearTile {
   std::uint32_t tile = 0;
 };
 
-// Estimates look at the quads of some triangles only: of one run in every 32, from the first. Runs half as
-// long begin too often with caches that hold nothing of them; twice as long and as rare, they miss too much.
+// Estimates look at the quads of some triangles only: of the first run of a draw, and of each so many runs
+// behind it. With runs half as long, the caches hold too little of what comes before.
 inline constexpr std::size_t kSampledRun = 128;
-inline constexpr std::size_t kSampledRunsApart = 32;
-constexpr bool is_sampled(std::size_t triangle) {
-  return triangle / kSampledRun % kSampledRunsApart == 0;
+// By the triangles of a trace: all of a small one, one run in 32 of a large one; a power of two.
+constexpr std::uint32_t sampled_runs_apart(std::uint64_t triangles) {
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(std::bit_floor(triangles / 8192), 1, 32));
 }
 
 struct DrawWork {
@@ -60,15 +63,18 @@ struct DrawWork {
   std::vector<QuadWork> quads;                 // of all triangles in order
   std::vector<std::uint32_t> texel_blocks;     // of all quads in order
   std::vector<ClearTile> clear_tiles;          // by triangle
+  std::uint32_t sampled_runs_apart = 1;
   // Whether only samples of it were recorded: no shaded vertices, quads and texel blocks of the sampled
   // triangles.
   bool samples_only = false;
 
+  bool is_sampled(std::size_t triangle) const {
+    return (triangle / kSampledRun & (sampled_runs_apart - 1)) == 0;
+  }
   // The first triangle behind this one whose quads, if it has any, are in the record.
   std::size_t next_recorded(std::size_t triangle) const {
-    constexpr std::size_t kApart = kSampledRun * kSampledRunsApart;
-    const std::size_t next = triangle + 1;
-    return !samples_only || is_sampled(next) ? next : (next / kApart + 1) * kApart;
+    const std::size_t next = triangle + 1, apart = kSampledRun * sampled_runs_apart;
+    return !samples_only || is_sampled(next) ? next : (next / apart + 1) * apart;
   }
 };
 

@@ -33,7 +33,7 @@ void each_sample(const DrawWork& work, Look look) {
     const std::span quads(quad, work.triangles[triangle].quad_count);
     std::size_t blocks = 0;
     for (const QuadWork& each : quads) blocks += each.texel_block_count;
-    if (is_sampled(triangle)) look(triangle, quads, std::span(block, blocks));
+    if (work.is_sampled(triangle)) look(triangle, quads, std::span(block, blocks));
     quad += quads.size();
     block += blocks;
   }

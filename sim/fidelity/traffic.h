@@ -17,7 +17,7 @@ struct Traffic {
 };
 
 // Counts what the frame and texture caches of a machine would move, on their tags alone: for the quads of
-// sampled triangles (is_sampled), beginning with empty caches at the start of a draw.
+// sampled triangles (DrawWork::is_sampled), beginning with empty caches at the start of a draw.
 class TrafficCounter {
  public:
   TrafficCounter(const Machine& machine, const MemoryLayout& layout);
