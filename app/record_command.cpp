@@ -23,15 +23,15 @@ struct Options {
 };
 
 void record(const Options& options, bool quiet) {
-  std::vector<traces::NamedFile> inputs = studies::files_of_input("SCENE", options.scene);
-  inputs.push_back({"--machine", options.machine});
-  traces::expect_apart({{"-o", options.out}}, inputs);
+  const std::vector<traces::NamedFile> written{{"-o", options.out}};
+  traces::expect_apart(written, {{"SCENE", options.scene}, {"--machine", options.machine}});
   const Machine machine = machine::load(options.machine);
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.scene, loading.callback());
   loading.clear();
   if (std::holds_alternative<Trace>(opened))
     throw UserError(options.scene, 0, "is a trace already, expected a scene");
+  traces::expect_apart(written, studies::files_of(opened));
   { const traces::OutputFile writable(options.out); }  // before the work, not after it
   ProgressBar recording("recording", quiet);
   const studies::Input input =

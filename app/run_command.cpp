@@ -86,10 +86,9 @@ bool simulates_cycles(studies::Fidelity fidelity) {
   return fidelity == studies::Fidelity::cycle || fidelity == studies::Fidelity::referee;
 }
 
-// That no file of the command line is written over another.
-void expect_apart(const Options& options) {
-  std::vector<traces::NamedFile> files = studies::files_of_input("INPUT", options.input);
-  files.push_back({"--machine", options.machine});
+// That no file of the command line is written over another, nor over one of `files`.
+void expect_apart(const Options& options, std::vector<traces::NamedFile> files) {
+  files.insert(files.end(), {{"INPUT", options.input}, {"--machine", options.machine}});
   for (const std::string& program : options.programs)
     files.push_back({"--program", program.substr(program.find('=') + 1)});
   const studies::ObserveOptions& observe = options.observe;
@@ -115,7 +114,7 @@ void expect_used(const Options& options, studies::Fidelity fidelity) {
 }
 
 void run(const Options& options, bool quiet) {
-  expect_apart(options);
+  expect_apart(options, {});
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
@@ -127,6 +126,7 @@ void run(const Options& options, bool quiet) {
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.input, loading.callback());
   loading.clear();
+  expect_apart(options, studies::files_of(opened));
   if (map) studies::expect_scene(opened, options.input);
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::reference_of(opened, *map);

@@ -32,13 +32,15 @@ std::string refuse_nan(const std::string& text) {
 
 void sample(const Options& options, bool quiet) {
   if (options.source.file.empty()) throw UserError("MESH", 0, "\"\" names no file, expected a mesh");
-  traces::expect_apart({{"-o", options.out}}, {{"MESH", options.source.file}});
+  const std::vector<traces::NamedFile> written{{"-o", options.out}};
+  traces::expect_apart(written, {{"MESH", options.source.file}});
   { const traces::OutputFile writable(options.out); }  // before the work, not after it
   traces::SampledModel sampled;
   {
     ProgressBar progress("sampling", quiet);
     sampled = traces::sample_source(options.source, "", progress.callback());
   }
+  traces::expect_apart(written, sampled.files);
   traces::write_ply(sampled.surfels, options.out);
   std::cout << fmt::format("{}: {}\n", options.out, traces::describe(sampled));
 }

@@ -38,17 +38,21 @@ void print(const studies::Sweep& sweep) {
 }
 
 void run(const Options& options, bool quiet) {
-  std::vector<traces::NamedFile> inputs = studies::files_of_input("INPUT", options.input);
-  inputs.push_back({"--machine", options.machine});
-  traces::expect_apart({{"a result in --out", std::filesystem::path(options.out) / "results.json"}}, inputs);
+  const std::vector<traces::NamedFile> written{
+      {"a result in --out", std::filesystem::path(options.out) / "results.json"}};
+  traces::expect_apart(written, {{"INPUT", options.input}, {"--machine", options.machine}});
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::set(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   const auto swept = studies::swept_parameters(options.swept, options.settings);
   std::optional<traces::OutputFolder> folder;
   ProgressBar running("running", quiet);
+  const auto before_work = [&](const studies::Opened& opened) {
+    traces::expect_apart(written, studies::files_of(opened));
+    folder.emplace(options.out);
+  };
   const studies::Sweep sweep = studies::run_sweep(options.input, machine, swept, fidelity, options.cache,
-                                                  running.callback(), [&] { folder.emplace(options.out); });
+                                                  running.callback(), before_work);
   running.clear();
   traces::write_file(folder->path() / "results.json",
                      studies::results_of(sweep, machine, fidelity).dump(1) + "\n");

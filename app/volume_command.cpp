@@ -6,7 +6,6 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
-#include "studies/run_files.h"
 #include "studies/volume_run.h"
 #include "traces/output_files.h"
 
@@ -33,10 +32,11 @@ void add_volume_command(CLI::App& app, Invocation& invocation) {
     std::vector<traces::NamedFile> results;
     for (const char* name : {"frame.png", "frame.exr", "results.json"})
       results.push_back({"a result in --out", std::filesystem::path(options->out) / name});
-    traces::expect_apart(results, studies::files_of_input("SCENE", options->scene));
+    traces::expect_apart(results, {{"SCENE", options->scene}});
     const auto precision = options->precision == "single" ? studies::Precision::single_precision
                                                           : studies::Precision::double_precision;
     const traces::VolumeScene scene = traces::load_volume_scene(options->scene);
+    traces::expect_apart(results, scene.files);
     std::string text;
     {
       ProgressBar progress("drawing", invocation.quiet);

@@ -6,8 +6,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "traces/scene.h"
-
 namespace splatscope::studies {
 namespace fs = std::filesystem;
 
@@ -51,14 +49,10 @@ std::string picture_name(std::size_t number, std::size_t frames) {
   return number + 1 == frames ? "frame.png" : fmt::format("frame-{:03}.png", number);
 }
 
-std::vector<traces::NamedFile> files_of_input(const std::string& what, const std::string& scene_or_trace) {
-  const fs::path path(scene_or_trace);
-  std::vector<traces::NamedFile> files{{what, path}};
-  std::error_code error;  // what is no ordinary file, a pipe say, can be read but once
-  if (path.extension() == ".trace" || !fs::is_regular_file(path, error)) return files;
-  for (const fs::path& file : traces::files_named(traces::read_scene_text(path)))
-    files.push_back({"the scene", file});
-  return files;
+std::vector<traces::NamedFile> files_of(const Opened& opened) {
+  if (const auto* scene = std::get_if<traces::Scene>(&opened)) return scene->files;
+  if (const auto* volume = std::get_if<traces::VolumeScene>(&opened)) return volume->files;
+  return {};
 }
 
 void expect_apart_from_results(const std::vector<traces::NamedFile>& files, const fs::path& folder) {

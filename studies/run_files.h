@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/run.h"
 #include "traces/output_files.h"
 
 // The names of the files that a run writes into its folder.
@@ -12,9 +13,8 @@ namespace splatscope::studies {
 // Of the last of `frames` ("frame.png") and of the ones before it ("frame-000.png", ...).
 std::string picture_name(std::size_t number, std::size_t frames);
 
-// What the argument `what` of a command line names, a scene or a trace, and the files that the scene names.
-// Throws UserError where the scene's text is wrong.
-std::vector<traces::NamedFile> files_of_input(const std::string& what, const std::string& scene_or_trace);
+// The files beside its own that `opened` was read from: what a scene names, and what they name in turn.
+std::vector<traces::NamedFile> files_of(const Opened& opened);
 
 // Throws UserError where one of `files` has the place of a result that a run may write into `folder`.
 void expect_apart_from_results(const std::vector<traces::NamedFile>& files,

@@ -131,7 +131,7 @@ std::vector<SweptParameter> swept_parameters(const std::vector<std::string>& tex
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
                 const std::optional<std::filesystem::path>& cache_folder, const Progress& progress,
-                const std::function<void()>& before_work) {
+                const std::function<void(const Opened&)>& before_work) {
   const auto start = HostClock::now();
   if (fidelity == Fidelity::functional)
     throw UserError("--fidelity", 0,
@@ -142,7 +142,7 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
   const auto opened = open_input(scene_or_trace);
   std::optional<WorkCache> cache;
   if (cache_folder) cache.emplace(*cache_folder);
-  if (before_work) before_work();
+  if (before_work) before_work(opened);
   std::size_t done = 0;
   for (const Group& same : groups) {
     sweep.input = make_input(opened, scene_or_trace, same.machine);

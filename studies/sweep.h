@@ -41,11 +41,11 @@ struct Sweep {
 // Every combination of the values, the last parameter running fastest, on `machine`. Parameters that the
 // function depends on (numbers.*, vertex.cache_entries) may be swept too: it is then computed for each.
 // Timings run in as many processes as the host has threads. `before_work` is called once all input is found
-// right.
+// right, with that.
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
                 const std::optional<std::filesystem::path>& cache, const Progress& progress = {},
-                const std::function<void()>& before_work = {});
+                const std::function<void(const Opened&)>& before_work = {});
 
 nlohmann::ordered_json results_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity);
 

@@ -74,11 +74,6 @@ TEST(CommandLine, FilesOfOneNameAreRefused) {
   folder.file("a.vs", "vs_1_1\nmov oPos, v0\n");
   std::filesystem::create_hard_link(folder.path() / "in.toml", folder.path() / "hard.toml");
   folder.file("m.toml", "base = \"radeon-8500\"\n");
-  folder.file("mesh.toml", "[surfels]\nfile = \"square.obj\"\n");
-  folder.file("volume.toml", "[volume]\nfile = \"v.nrrd\"\n");
-  folder.file("v.nrrd", "the scene's");
-  folder.file("named.toml", "[volume]\nfile = \"results.json\"\n");
-  folder.file("results.json", "the scene's");
   const auto before = folder.names();
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
     expect_refused(run_program(arguments, folder.path()), part);
@@ -91,13 +86,6 @@ TEST(CommandLine, FilesOfOneNameAreRefused) {
   refused({"sample", "square.obj", "-o", "square.obj"}, "by -o and by MESH");
   refused({"shader", "assemble", "a.vs", "-o", "./a.vs"}, "by --out and by FILE (a.vs)");
   refused({"shader", "disassemble", "a.vs", "-o", "a.vs"}, "by --out and by FILE (a.vs)");
-  refused({"record", "mesh.toml", "-o", "square.obj"},
-          "square.obj: is named by -o and by the scene (square.obj)");
-  refused({"record", "volume.toml", "-o", "./v.nrrd"}, "by -o and by the scene (v.nrrd)");
-  refused({"run", "mesh.toml", "--out", "o", "--counters", "square.obj"}, "by --counters and by the scene");
-  refused({"volume", "named.toml", "--out", "."}, "by a result in --out and by the scene");
-  refused({"sweep", "named.toml", "--sweep", "vertex.units=1,2", "--out", "."},
-          "by a result in --out and by the scene");
   refused({"run", "in.toml", "--out", "o", "--counters", "in.toml"}, "by --counters and by INPUT");
   refused({"run", "in.toml", "--out", "o", "--program", "splat_ewa.vs=a.vs", "--pipeline", "a.vs"},
           "by --pipeline and by --program");

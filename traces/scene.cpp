@@ -31,6 +31,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   }
   Scene scene;
   scene.name = file.stem().string();
+  scene.files = files_named(settings, file.parent_path());
   scene.frame = {settings.width, settings.height};
   scene.splatting = settings.splatting;
   scene.capture = settings.capture;
@@ -44,6 +45,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   scene.skipped = surfels.skipped;
   scene.estimated = surfels.estimated;
   scene.mesh = surfels.mesh;
+  scene.files.insert(scene.files.end(), surfels.files.begin(), surfels.files.end());
   scene.camera = settings.camera = surfels.camera;
   check_camera(settings, file.string());
   scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : surfels.average_spacing;
@@ -62,15 +64,6 @@ Scene load_scene(const SceneText& text, const std::function<void(double)>& progr
                     fmt::format("none of its surfels can be drawn: {}, expected at least one that can",
                                 describe(scene.skipped)));
   return scene;
-}
-
-std::vector<std::filesystem::path> files_named(const SceneText& scene) {
-  const SceneSettings settings = parse_settings(scene.text, scene.file.string());
-  std::vector<std::filesystem::path> files;
-  for (const std::string* name :
-       {&settings.surfels.file, &settings.volume.file, &settings.volume.positions, &settings.volume.samples})
-    if (!name->empty()) files.push_back(scene.file.parent_path() / *name);
-  return files;
 }
 
 std::string describe(const SkipCounts& skipped) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "traces/models/mesh.h"
+#include "traces/output_files.h"
 #include "traces/scene_text.h"
 
 // What a user wants drawn: surfels, a camera, and how to splat. It lives on the host; the recorder turns it
@@ -108,7 +109,8 @@ struct EstimateCounts {
 };
 
 struct Scene {
-  std::string name;  // the scene file's name without folder and ending
+  std::string name;              // the scene file's name without folder and ending
+  std::vector<NamedFile> files;  // others that it was read from
   std::vector<Surfel> surfels;
   SkipCounts skipped;
   EstimateCounts estimated;
@@ -130,10 +132,6 @@ Scene load_scene(const SceneText& text, const std::function<void(double)>& progr
 // The same from text; `file` is for messages and for finding the surfel file.
 Scene parse_scene(std::string_view text, const std::filesystem::path& file,
                   const std::function<void(double)>& progress = {});
-
-// The files that a scene names: of its surfels, or of its volume. Throws UserError as parse_scene does for
-// the text.
-std::vector<std::filesystem::path> files_named(const SceneText& scene);
 
 // "2 left out (1 not finite, 1 of radius 0)", or "none left out".
 std::string describe(const SkipCounts& skipped);

@@ -242,6 +242,14 @@ void check_volume_alone(const toml::table& root, std::string_view file) {
 
 }  // namespace
 
+std::vector<NamedFile> files_named(const SceneSettings& settings, const std::filesystem::path& folder) {
+  std::vector<NamedFile> files;
+  for (const std::string* name :
+       {&settings.surfels.file, &settings.volume.file, &settings.volume.positions, &settings.volume.samples})
+    if (!name->empty()) files.push_back({"the scene", folder / *name});
+  return files;
+}
+
 void check_camera(const SceneSettings& settings, std::string_view file) {
   const Camera& c = settings.camera;
   if (!(c.near < c.far)) refuse_planes(settings, file);

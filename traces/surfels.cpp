@@ -84,6 +84,7 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
                            const std::function<void(double)>& progress) {
   Model model;
   MeshCounts counts;
+  std::vector<NamedFile> files;
   if (source.file.empty()) {
     model = make_procedural(source.generator);
     counts.triangles = model.mesh.triangles.size();
@@ -93,6 +94,7 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
     counts.triangles_out_of_range += file.faces_out_of_range;
     counts.textures_unreadable = file.textures_unreadable;
     model = std::move(file.model);
+    for (std::filesystem::path& part : file.files) files.push_back({"the mesh", std::move(part)});
     if (model.mesh.triangles.empty())
       throw UserError((folder / source.file).string(), 0, "no triangle of it has a surface, expected a mesh");
   }
@@ -105,7 +107,7 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
   options.shading = source.shading;
   options.neighbours = source.neighbours;
   ModelSurfels made = sample_model(model, options, progress);
-  SampledModel result{std::move(made.surfels), counts, made.copies, 0};
+  SampledModel result{std::move(made.surfels), counts, made.copies, 0, std::move(files)};
   const auto cannot_be_drawn = [](const Surfel& s) { return !(s.radius > 0); };
   result.zero_radius = static_cast<std::size_t>(std::ranges::count_if(result.surfels, cannot_be_drawn));
   return result;
@@ -131,6 +133,7 @@ Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path&
   SampledModel sampled = sample_source(source, folder, progress);
   Surfels result = complete({std::move(sampled.surfels), true, true, {}}, settings);
   result.mesh = sampled.mesh;
+  result.files = std::move(sampled.files);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "traces/output_files.h"
 #include "traces/scene_keys.h"
 
 namespace splatscope::traces {
@@ -11,8 +12,9 @@ struct Surfels {
   SkipCounts skipped;
   EstimateCounts estimated;
   MeshCounts mesh;
-  Camera camera;               // the settings', completed (framing.h)
-  double average_spacing = 0;  // object units, > 0
+  Camera camera;                   // the settings', completed (framing.h)
+  double average_spacing = 0;      // object units, > 0
+  std::vector<NamedFile> files{};  // that a mesh was read from
 };
 
 // Makes, samples or loads the surfels that the settings ask for. A file's name is relative to `folder`. What
@@ -26,8 +28,9 @@ Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path&
 struct SampledModel {
   std::vector<Surfel> surfels;
   MeshCounts mesh;
-  std::size_t copies = 0;       // surfels that are equal to an earlier one: the mesh has no more places
-  std::size_t zero_radius = 0;  // which cannot be drawn
+  std::size_t copies = 0;          // surfels that are equal to an earlier one: the mesh has no more places
+  std::size_t zero_radius = 0;     // which cannot be drawn
+  std::vector<NamedFile> files{};  // that the mesh was read from
 };
 SampledModel sample_source(const SurfelSource& source, const std::filesystem::path& folder,
                            const std::function<void(double)>& progress = {});

@@ -1,5 +1,6 @@
 #include "traces/models/mesh_file.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -64,13 +65,30 @@ struct Materials {
   }
 };
 
+// Notes the files that assimp opens.
+class NotedFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit NotedFiles(std::vector<std::filesystem::path>& files) : files_(files) {}
+
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
+    if (stream) files_.emplace_back(file);
+    return stream;
+  }
+
+ private:
+  std::vector<std::filesystem::path>& files_;
+};
+
 std::optional<TextureImage> texture_of(const aiScene& scene, const std::string& name,
-                                       const std::filesystem::path& folder) {
+                                       const std::filesystem::path& folder,
+                                       std::vector<std::filesystem::path>& files) {
   const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str());
   if (!embedded) {
     std::string path = name;
     std::ranges::replace(path, '\\', '/');
-    return read_texture(folder / path);
+    files.push_back(folder / path);
+    return read_texture(files.back());
   }
   if (embedded->mHeight == 0)
     return read_texture(
@@ -114,7 +132,7 @@ class Reader {
       for (aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
         aiString texture;
         if (scene_.mMaterials[i]->GetTexture(type, 0, &texture) != aiReturn_SUCCESS) continue;
-        material.texture = texture_of(scene_, texture.C_Str(), path_.parent_path());
+        material.texture = texture_of(scene_, texture.C_Str(), path_.parent_path(), file_.files);
         if (!material.texture) ++file_.textures_unreadable;
         break;
       }
@@ -205,7 +223,9 @@ MeshFile read_whole(const std::filesystem::path& path) {
   if (ending_of(path) == ".ply" &&
       !ply_has_faces(path))  // its header is right, too: assimp's reader hangs on some
     throw UserError(file, 0, "holds no faces, expected a mesh");
+  std::vector<std::filesystem::path> files;
   Assimp::Importer importer;
+  importer.SetIOHandler(new NotedFiles(files));  // the importer's to delete
   if (!importer.IsExtensionSupported(ending_of(path)))
     throw UserError(file, 0,
                     "has no ending that assimp knows, expected a mesh such as .ply, .obj, .off or .stl");
@@ -222,6 +242,7 @@ MeshFile read_whole(const std::filesystem::path& path) {
     throw UserError(file, 0, "its polygons cannot be cut into triangles, expected a mesh");
   MeshFile result = Reader(path, *scene).read();
   result.faces_out_of_range = dropped;
+  result.files.insert(result.files.end(), files.begin(), files.end());
   return result;
 }
 

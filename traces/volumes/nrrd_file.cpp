@@ -76,6 +76,10 @@ void check_finite(std::span<const float> values, const NrrdHeader& header,
                               at % columns, at / columns % rows, at / columns / rows, *found));
 }
 
+std::filesystem::path data_of(const NrrdHeader& header, const std::filesystem::path& path) {
+  return header.data_file.empty() ? path : path.parent_path() / header.data_file;
+}
+
 struct Nrrd {
   NrrdHeader header;
   std::vector<float> values;
@@ -88,7 +92,7 @@ Nrrd read(const std::filesystem::path& path, int components) {
   Nrrd nrrd{read_nrrd_header(in, path.string(), components), {}};
   const NrrdHeader& header = nrrd.header;
   const bool attached = header.data_file.empty();
-  const std::filesystem::path data = attached ? path : path.parent_path() / header.data_file;
+  const std::filesystem::path data = data_of(header, path);
   const std::size_t start = (attached ? header.data_start : 0) + header.skip;
   const std::size_t width = bytes_of(header.type),
                     count = header.voxels() * static_cast<std::size_t>(components);
@@ -118,6 +122,11 @@ Nrrd read(const std::filesystem::path& path, int components) {
 }
 
 }  // namespace
+
+std::filesystem::path nrrd_data_file(const std::filesystem::path& path, int components) {
+  std::ifstream in(path, std::ios::binary);
+  return data_of(read_nrrd_header(in, path.string(), components), path);
+}
 
 kernels::Volume read_nrrd(const std::filesystem::path& path) {
   Nrrd nrrd = read(path, 1);

@@ -15,6 +15,9 @@ namespace splatscope::traces {
 // allocated before the sizes agree with the file's.
 kernels::Volume read_nrrd(const std::filesystem::path& path);
 
+// Where the data of a NRRD file that was read are: in the raw file that its header names, or in itself.
+std::filesystem::path nrrd_data_file(const std::filesystem::path& path, int components);
+
 // Places of voxels, object units; x varies fastest, then y.
 struct VoxelPositions {
   glm::ivec3 size{};

@@ -150,6 +150,14 @@ void read_irregular(const SceneSettings& settings, const std::filesystem::path& 
   for (const kernels::VolumeSample& sample : scene.samples) scene.volume.values.push_back(sample.value);
 }
 
+// Those that the headers of a grid name.
+void add_data_files(const SceneSettings& settings, const std::filesystem::path& folder,
+                    std::vector<NamedFile>& files) {
+  const VolumeKeys& keys = settings.volume;
+  if (!keys.file.empty()) files.push_back({"the header", nrrd_data_file(folder / keys.file, 1)});
+  if (!keys.positions.empty()) files.push_back({"the header", nrrd_data_file(folder / keys.positions, 3)});
+}
+
 struct Box {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
 
@@ -212,10 +220,12 @@ VolumeScene parse_volume_scene(std::string_view text, const std::filesystem::pat
   VolumeScene scene;
   scene.name = file.stem().string();
   scene.file = file.string();
+  scene.files = files_named(settings, file.parent_path());
   scene.prefilter_line = settings.line_of({"volume.prefilter"});
   if (keys.samples.empty()) {
     scene.volume = volume_of(settings, file);
     scene.places = places_of(settings, scene.volume, file);
+    add_data_files(settings, file.parent_path(), scene.files);
   } else {
     read_irregular(settings, file, scene);
   }

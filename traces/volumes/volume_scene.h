@@ -11,6 +11,7 @@
 #include "kernels/reference/volume/volume_rendering.h"
 #include "kernels/reference/volume/volume_splats.h"
 #include "kernels/view.h"
+#include "traces/output_files.h"
 #include "traces/scene_text.h"
 
 namespace splatscope::traces {
@@ -19,6 +20,7 @@ namespace splatscope::traces {
 struct VolumeScene {
   std::string name;                            // the scene file's name without folder and ending
   std::string file;                            // for messages
+  std::vector<NamedFile> files;                // others that it was read from
   int prefilter_line = 0;                      // of volume.prefilter
   kernels::Volume volume;                      // of irregular data: their values in a row
   kernels::VoxelPlaces places;                 // of a rectilinear or curvilinear grid; else empty
