@@ -36,6 +36,13 @@ bool is_standard_stream(const fs::path& path) {
   });
 }
 
+// What other programs take for standard output.
+void refuse_dash(const fs::path& path) {
+  if (path == "-")
+    throw UserError("-", 0,
+                    "is not standard output here, expected a file's or folder's name (./- for one called -)");
+}
+
 }  // namespace
 
 void expect_apart(const std::vector<NamedFile>& written, const std::vector<NamedFile>& others) {
@@ -54,6 +61,7 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
   temporary_ = path_.parent_path() /
                fmt::format(".{}.{}{}", path_.stem().string(), ::getpid(), path_.extension().string());
   std::error_code error;
+  refuse_dash(path_);
   if (path_.filename().empty())
     throw UserError(fmt::format("\"{}\"", path_.string()), 0, "names no file, expected a place for one");
   if (fs::is_directory(path_, error))
@@ -94,6 +102,7 @@ void write_file(const fs::path& path, std::string_view text) {
 
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;
+  refuse_dash(path_);
   for (fs::path folder = path_; !folder.empty() && !fs::exists(folder, error); folder = folder.parent_path())
     made_.push_back(folder);
   fs::create_directories(path_, error);

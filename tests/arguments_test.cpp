@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "program.h"
+
+namespace splatscope::tests {
+namespace {
+
+// Words that any option may be given by mistake: exit 2, a message that names the word, and no file.
+class Arguments : public testing::Test {
+ protected:
+  Arguments() {
+    folder_.file("a.vs", "vs_1_1\nmov oPos, v0\n");
+    folder_.file("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder_.file("s.toml", "[surfels]\ncolumns = 2\nrows = 2\n[frame]\nwidth = 8\nheight = 8\n");
+    folder_.file("v.toml", "[volume]\nvoxels = [4, 4, 4]\n[frame]\nwidth = 8\nheight = 8\n");
+  }
+
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& error) const {
+    const auto before = folder_.names();
+    const Outcome outcome = run_program(arguments, folder_.path());
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.error.substr(0, error.size()), error);
+    EXPECT_EQ(folder_.names(), before);
+  }
+
+  const ScratchFolder folder_;
+};
+
+// Every option that names an output, without its value.
+const std::vector<std::vector<std::string>> kOutputs = {
+    {"shader", "assemble", "a.vs", "-o"},
+    {"shader", "disassemble", "a.vs", "-o"},
+    {"record", "s.toml", "-o"},
+    {"sample", "m.obj", "-n", "5", "-o"},
+    {"run", "s.toml", "--out"},
+    {"run", "s.toml", "--out", "o", "--counters"},
+    {"run", "s.toml", "--out", "o", "--timeline"},
+    {"run", "s.toml", "--out", "o", "--pipeline"},
+    {"sweep", "s.toml", "--sweep", "vertex.units=1", "--out"},
+    {"sweep", "s.toml", "--sweep", "vertex.units=1", "--out", "o", "--cache"},
+    {"volume", "v.toml", "--out"},
+    {"reproduce", "fig3", "--out"},
+    {"study", "vertex-data", "--out"}};
+
+TEST_F(Arguments, ADashIsNoOutput) {
+  for (std::vector<std::string> arguments : kOutputs) {
+    arguments.emplace_back("-");
+    expect_refused(arguments, "-: is not standard output here, expected a file's or folder's name");
+  }
+  EXPECT_EQ(run_program({"shader", "assemble", "a.vs", "-o", "./-"}, folder_.path()).status, 0);
+}
+
+}  // namespace
+}  // namespace splatscope::tests
