@@ -54,6 +54,15 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// An empty word means nothing to any option; it comes from a variable of a script that is not set.
+void refuse_empty_values(CLI::App& command) {
+  const auto check = [](const std::string& value) {
+    return value.empty() ? std::string("\"\" is empty, expected a name or a value") : std::string();
+  };
+  for (CLI::Option* option : command.get_options()) option->check(check);
+  for (CLI::App* part : command.get_subcommands([](CLI::App*) { return true; })) refuse_empty_values(*part);
+}
+
 int run(int argc, const char* const* argv) {
   CLI::App app("splatscope: a cycle-level simulator of a programmable GPU of 2002, and EWA splatting on it");
   app.require_subcommand(1);
@@ -72,6 +81,7 @@ int run(int argc, const char* const* argv) {
   add_trace_command(app);
   add_explain_command(app, invocation);
   add_scene_command(app);
+  refuse_empty_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,7 +10,6 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
-#include "model/error.h"
 #include "traces/output_files.h"
 #include "traces/point_file.h"
 #include "traces/surfels.h"
@@ -31,7 +30,6 @@ std::string refuse_nan(const std::string& text) {
 }
 
 void sample(const Options& options, bool quiet) {
-  if (options.source.file.empty()) throw UserError("MESH", 0, "\"\" names no file, expected a mesh");
   const std::vector<traces::NamedFile> written{{"-o", options.out}};
   traces::expect_apart(written, {{"MESH", options.source.file}});
   { const traces::OutputFile writable(options.out); }  // before the work, not after it

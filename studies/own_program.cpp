@@ -26,7 +26,7 @@ Replacement replacement_of(const Trace& trace, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   std::string names;
   for (const ShaderText& program : trace.programs) names += (names.empty() ? "" : ", ") + program.name;
-  if (equals == std::string::npos) {
+  if (equals == std::string::npos || equals + 1 == assignment.size()) {
     throw UserError("--program", 0,
                     fmt::format("\"{}\", expected NAME=FILE, where NAME is one of {}", assignment, names));
   }

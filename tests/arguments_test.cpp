@@ -53,5 +53,26 @@ TEST_F(Arguments, ADashIsNoOutput) {
   EXPECT_EQ(run_program({"shader", "assemble", "a.vs", "-o", "./-"}, folder_.path()).status, 0);
 }
 
+TEST_F(Arguments, NoneIsEmpty) {
+  for (std::vector<std::string> arguments : kOutputs) {
+    const std::string option =
+        arguments.back() == "-o" && arguments[0] == "shader" ? "--out" : arguments.back();
+    arguments.emplace_back();
+    expect_refused(arguments, "splatscope: " + option + ": \"\" is empty, expected a name or a value");
+  }
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& option) {
+    expect_refused(arguments, "splatscope: " + option + ": \"\" is empty, expected a name or a value");
+  };
+  refused({"run", "", "--out", "o"}, "INPUT");
+  refused({"sample", "", "-o", "s.ply"}, "MESH");
+  refused({"run", "s.toml", "--machine", "", "--out", "o"}, "--machine");
+  refused({"explain", "s.toml", "--pixel", ""}, "--pixel");
+  refused({"shader", "debug", "a.vs", "--registers", ""}, "--registers");
+  refused({"machine", "show", ""}, "NAME");
+  refused({"study", ""}, "NAME");
+  expect_refused({"run", "s.toml", "--program", "splat_ewa.vs=", "--out", "o"},
+                 "--program: \"splat_ewa.vs=\", expected NAME=FILE");
+}
+
 }  // namespace
 }  // namespace splatscope::tests

@@ -157,10 +157,6 @@ TEST(CommandLine, WrongMachinesAreRefused) {
   expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:2: ");
 }
 
-TEST(CommandLine, AMeshWithoutANameIsRefused) {
-  expect_refused(run_program({"sample", "", "-o", "s.ply"}), "MESH: \"\" names no file");
-}
-
 TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
