@@ -21,6 +21,8 @@
 namespace splatscope::app {
 namespace {
 
+constexpr std::uint64_t kMostCyclesARow = 1'000'000'000'000;
+
 struct Options {
   std::string input;
   std::string machine = "geforce4-ti4400";
@@ -177,7 +179,7 @@ void add_observe_options(CLI::App& command, studies::ObserveOptions& observe) {
                                              "a table (CSV) of shares, statistics and queues over time");
   command.add_option("--counters-every", observe.counters_every, "core cycles a row of it")
       ->needs(counters)
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(std::uint64_t{1}, kMostCyclesARow))
       ->capture_default_str();
 }
 

@@ -74,5 +74,16 @@ TEST_F(Arguments, NoneIsEmpty) {
                  "--program: \"splat_ewa.vs=\", expected NAME=FILE");
 }
 
+TEST_F(Arguments, RangesCanBeRead) {
+  for (const char* every : {"0", "-5", "1e6", "1000000000001"})
+    expect_refused({"run", "s.toml", "--out", "o", "--counters", "c.csv", "--counters-every", every},
+                   std::string("splatscope: --counters-every: Value ") + every +
+                       " not in range 1 to 1000000000000 (--help says");
+  const Outcome most =
+      run_program({"run", "s.toml", "--out", "o", "--counters", "c.csv", "--counters-every", "1000000000000"},
+                  folder_.path());
+  EXPECT_EQ(most.status, 0) << most.error;
+}
+
 }  // namespace
 }  // namespace splatscope::tests
