@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "model/byte_order_mark.h"
 #include "model/error.h"
 
 namespace splatscope {
@@ -49,7 +50,6 @@ std::string read_text_file(const std::filesystem::path& path, std::string_view e
   if (in.bad()) throw UserError(path.string(), 0, fmt::format("cannot be read, expected {}", expected));
   if (text.size() > kMostTextBytes)
     throw UserError(path.string(), 0, fmt::format("is larger than 1 MiB, expected {}", expected));
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // that some editors put before UTF-8
   if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   return text;
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <optional>
 
+#include "model/byte_order_mark.h"
 #include "model/error.h"
 
 namespace splatscope::traces {
@@ -47,7 +48,9 @@ class HeaderReader {
   HeaderReader(std::istream& in, std::string_view file) : in_(in), file_(file) {}
 
   PlyHeader read() {
-    if (next_line() != "ply") fail("the first line is not \"ply\"", "a PLY file");
+    const std::string first = next_line();
+    if (first != "ply" && first != std::string(kByteOrderMark) + "ply")
+      fail("the first line is not \"ply\"", "a PLY file");
     bool has_format = false;
     for (;;) {
       const std::string line = next_line();

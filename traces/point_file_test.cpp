@@ -118,6 +118,14 @@ TEST_F(PointFileTest, Ascii) {
   EXPECT_EQ(points.surfels[2].position, glm::vec3(2, 0, 0));
 }
 
+TEST_F(PointFileTest, AByteOrderMarkIsPassedOver) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(read(mark + std::string(kAscii)).surfels.at(2).position, glm::vec3(2, 0, 0));
+  EXPECT_EQ(read(mark + binary_file(false)).surfels.at(1).position, glm::vec3(1.25, -2, 4.5));
+  EXPECT_EQ(error_of(mark + mark + std::string(kAscii)),
+            ":1: the first line is not \"ply\", expected a PLY file");
+}
+
 TEST_F(PointFileTest, ErrorsNameLineOrByte) {
   const std::string ascii(kAscii);
   EXPECT_EQ(error_of("plyx\n"), ":1: the first line is not \"ply\", expected a PLY file");

@@ -1,6 +1,5 @@
 #include "traces/models/mesh_file.h"
 
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -12,6 +11,7 @@
 
 #include "model/error.h"
 #include "model/run_apart.h"
+#include "traces/models/assimp_files.h"
 #include "traces/models/texture_image.h"
 #include "traces/point_file.h"
 
@@ -63,21 +63,6 @@ struct Materials {
     if (material.texture) return material.texture->at(point.texcoord);
     return vertex_colors ? point.color : material.color;
   }
-};
-
-// Notes the files that assimp opens.
-class NotedFiles : public Assimp::DefaultIOSystem {
- public:
-  explicit NotedFiles(std::vector<std::filesystem::path>& files) : files_(files) {}
-
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
-    if (stream) files_.emplace_back(file);
-    return stream;
-  }
-
- private:
-  std::vector<std::filesystem::path>& files_;
 };
 
 std::optional<TextureImage> texture_of(const aiScene& scene, const std::string& name,
@@ -225,7 +210,7 @@ MeshFile read_whole(const std::filesystem::path& path) {
     throw UserError(file, 0, "holds no faces, expected a mesh");
   std::vector<std::filesystem::path> files;
   Assimp::Importer importer;
-  importer.SetIOHandler(new NotedFiles(files));  // the importer's to delete
+  importer.SetIOHandler(new AssimpFiles(files));  // the importer's to delete
   if (!importer.IsExtensionSupported(ending_of(path)))
     throw UserError(file, 0,
                     "has no ending that assimp knows, expected a mesh such as .ply, .obj, .off or .stl");

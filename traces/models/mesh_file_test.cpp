@@ -101,6 +101,15 @@ TEST_F(MeshFileTest, APlyWithFacesIsAMeshAndOneWithoutIsPoints) {
   EXPECT_EQ(points.mesh.triangles, 0u);
 }
 
+TEST_F(MeshFileTest, AByteOrderMarkIsPassedOver) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(scene_of("square.obj", mark + std::string(kSquare)).mesh.triangles, 2u);
+  const std::string_view ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(scene_of("m.ply", mark + std::string(ply)).mesh.triangles, 1u);
+}
+
 // 2 x 2 texels: red, green above, blue, white below. Each corner of the square has one of them.
 TEST_F(MeshFileTest, ColoursComeFromTheTexture) {
   file("t.ppm", std::string_view("P6\n2 2\n255\n\xff\0\0\0\xff\0\0\0\xff\xff\xff\xff", 23));
