@@ -181,12 +181,17 @@ void check_hierarchy(const SceneSettings& settings, std::string_view file) {
       {"hierarchy.level", asked.levels},
       {"hierarchy.surfels_per_pixel", dense},
       {"hierarchy.progressive", asked.progressive}};
+  std::vector<std::string_view> changed_keys;
   for (const auto& [key, changed] : keys)
-    if (none && changed)
-      throw UserError(
-          file, settings.line_of({key}),
-          fmt::format("{} without a hierarchy, expected hierarchy.culling = \"off\" or \"blocks\"{}", key,
-                      asked.culling == Culling::none ? "" : ", as the plane has none by default"));
+    if (changed) changed_keys.push_back(key);
+  if (none && !changed_keys.empty()) {
+    throw UserError(
+        file, settings.line_of({changed_keys[0]}),
+        fmt::format("{} without a hierarchy, expected {} removed, or hierarchy.culling = \"off\" (every "
+                    "block) or \"blocks\"{}",
+                    fmt::join(changed_keys, ", "), changed_keys.size() > 1 ? "them" : "it",
+                    asked.culling == Culling::none ? "" : ", as the plane has none by default"));
+  }
   if (dense && !asked.levels)
     throw UserError(file, settings.line_of({"hierarchy.surfels_per_pixel"}),
                     "hierarchy.surfels_per_pixel with level \"finest\", expected level = \"auto\"");

@@ -180,18 +180,21 @@ TEST(Scene, KeysOfTheHierarchyHaveSomethingToActOn) {
     const std::string name = key.substr(0, key.find(' '));
     EXPECT_EQ(
         error_of(plane + key + "\n"),
-        fmt::format("s.toml:2: hierarchy.{} without a hierarchy, expected hierarchy.culling = \"off\" or "
-                    "\"blocks\", as the plane has none by default",
+        fmt::format("s.toml:2: hierarchy.{} without a hierarchy, expected it removed, or hierarchy.culling = "
+                    "\"off\" (every block) or \"blocks\", as the plane has none by default",
                     name));
     EXPECT_EQ(
         error_of(sphere + key + "\nculling = \"none\"\n"),
-        fmt::format("s.toml:3: hierarchy.{} without a hierarchy, expected hierarchy.culling = \"off\" or "
-                    "\"blocks\"",
+        fmt::format("s.toml:3: hierarchy.{} without a hierarchy, expected it removed, or hierarchy.culling = "
+                    "\"off\" (every block) or \"blocks\"",
                     name));
     for (const std::string& with : {plane + "culling = \"off\"\n", plane + "culling = \"blocks\"\n", sphere})
       EXPECT_EQ(error_of(with + key + (name == "surfels_per_pixel" ? "\nlevel = \"auto\"\n" : "\n")),
                 "no error");
   }
+  EXPECT_EQ(error_of(sphere + "progressive = true\nculling = \"none\"\nblock_surfels = 64\n"),
+            "s.toml:5: hierarchy.block_surfels, hierarchy.progressive without a hierarchy, expected them "
+            "removed, or hierarchy.culling = \"off\" (every block) or \"blocks\"");
   EXPECT_EQ(error_of(sphere + "surfels_per_pixel = 2\n"),
             "s.toml:3: hierarchy.surfels_per_pixel with level \"finest\", expected level = \"auto\"");
   EXPECT_EQ(error_of(plane + "level = \"finest\"\nprogressive = false\n"), "no error");
