@@ -30,12 +30,32 @@ class NeighbourSearch {
     found.squared_distance.resize(count);
     const glm::vec3& p = positions_.surfels[i].position;
     const float query[] = {p.x, p.y, p.z};
-    const std::size_t size = tree_.knnSearch(query, count, found.index.data(), found.squared_distance.data());
-    found.index.resize(size);
-    found.squared_distance.resize(size);
+    Nearest nearest(found);
+    tree_.findNeighbors(nearest, query, nanoflann::SearchParams());
+    found.index.resize(nearest.size());
+    found.squared_distance.resize(nearest.size());
   }
 
  private:
+  // What nanoflann finds; the names are the library's. It ends a search once all that it asks for lie in the
+  // very place, where no other is nearer: thousands of surfels in one place would else go through one
+  // another.
+  class Nearest {
+   public:
+    explicit Nearest(Found& found) : all_(found.size()) {
+      all_.init(found.index.data(), found.squared_distance.data());
+    }
+    std::size_t size() const { return all_.size(); }
+    bool full() const { return all_.full(); }
+    double worstDist() const { return all_.worstDist(); }
+    bool addPoint(double squared_distance, std::uint32_t surfel) {
+      return all_.addPoint(squared_distance, surfel) && worstDist() > 0;
+    }
+
+   private:
+    nanoflann::KNNResultSet<double, std::uint32_t> all_;
+  };
+
   // nanoflann's view of the surfels; its names are the library's.
   struct Positions {
     std::span<const Surfel> surfels;

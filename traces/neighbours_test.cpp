@@ -22,5 +22,22 @@ TEST(NeighbourSearch, StopsWhileItsTreeIsBuilt) {
   EXPECT_EQ(found.distance(2), 1);
 }
 
+// Three places: many surfels share the first two, few the third.
+TEST(NeighbourSearch, LooksAtNoMoreOfAPlaceThanItIsAskedFor) {
+  constexpr std::size_t kMany = 100'000, kFew = 3;
+  std::vector<Surfel> surfels(2 * kMany + kFew);
+  for (std::size_t i = 0; i < surfels.size(); ++i)
+    surfels[i].position.x = i < kMany ? 0.0f : i < 2 * kMany ? 1.0f : 3.0f;
+  const NeighbourSearch search(surfels);
+  NeighbourSearch::Found found;
+  for (std::size_t i = 0; i < 2 * kMany; ++i) {
+    search.find(i, 13, found);
+    ASSERT_EQ(found.squared_distance, std::vector<double>(13, 0.0)) << i;
+    for (const std::uint32_t near : found.index) ASSERT_EQ(near < kMany, i < kMany);
+  }
+  search.find(2 * kMany, 5, found);
+  EXPECT_EQ(found.squared_distance, (std::vector<double>{0, 0, 0, 4, 4}));
+}
+
 }  // namespace
 }  // namespace splatscope::traces
