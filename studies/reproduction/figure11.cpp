@@ -1,10 +1,19 @@
+#include "studies/reproduction/figure11.h"
+
 #include <fmt/format.h>
 
 #include "studies/reference_comparison.h"
-#include "studies/reproduction/reproduction.h"
 #include "studies/run.h"
 
 namespace splatscope::studies {
+
+CheckerboardPicture draw_checkerboard(const traces::Scene& scene, const kernels::ReferencePicture& reference,
+                                      const Machine& machine, const Progress& progress) {
+  const Trace trace = traces::record(scene, machine.numbers, progress).trace;
+  Frame frame = run_frame(trace, machine, Fidelity::functional).rendered.frame;
+  const double decibels = psnr(frame, reference);
+  return {std::move(frame), decibels};
+}
 
 void reproduce_figure11(Findings& findings, const Progress& progress) {
   constexpr std::pair<std::string_view, std::string_view> kParts[] = {
@@ -17,18 +26,21 @@ void reproduce_figure11(Findings& findings, const Progress& progress) {
   const kernels::ReferencePicture reference =
       scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
   std::vector<Findings::Comparison> pictures;
+  auto list = nlohmann::ordered_json::array();
   for (const auto& [algorithm, caption] : kParts) {
     const double done = static_cast<double>(pictures.size()) / std::size(kParts);
     const auto scene = traces::load_scene(fmt::format("checkerboard-{}", algorithm));
-    const Trace trace =
-        traces::record(scene, machine.numbers, part(progress, done, done + 1.0 / std::size(kParts))).trace;
-    const FrameRun run = run_frame(trace, machine, Fidelity::functional);
-    const Frame& frame = run.rendered.frame;
-    pictures.push_back({fmt::format("fig11-{}", algorithm), std::string(caption), picture_of(frame),
-                        picture_of(reference), difference_picture(frame, reference)});
+    const CheckerboardPicture drawn =
+        draw_checkerboard(scene, reference, machine, part(progress, done, done + 1.0 / std::size(kParts)));
+    pictures.push_back({fmt::format("fig11-{}", algorithm), std::string(caption), picture_of(drawn.frame),
+                        picture_of(reference), difference_picture(drawn.frame, reference)});
+    findings.say(
+        fmt::format("fig11 {:<15} {:>5.1f} dB against EWA in double precision\n", algorithm, drawn.psnr));
+    list.push_back({{"algorithm", algorithm}, {"psnr_decibels", drawn.psnr}});
   }
   findings.report().heading("Fig. 11: the three algorithms");
   findings.compare(pictures);
+  findings.result("fig11", list);
 }
 
 }  // namespace splatscope::studies

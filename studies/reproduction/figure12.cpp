@@ -1,8 +1,8 @@
+#include "studies/reproduction/figure12.h"
+
 #include <fmt/format.h>
 
 #include "studies/picture_quality.h"
-#include "studies/reference_comparison.h"
-#include "studies/reproduction/reproduction.h"
 #include "studies/run.h"
 
 namespace splatscope::studies {
@@ -30,6 +30,14 @@ std::vector<Shown> shown_models() {
 
 }  // namespace
 
+ModelPicture draw_model(const traces::Scene& scene, const Machine& machine, const Progress& progress) {
+  kernels::ScreenSpacePicture reference = screen_space_reference(scene);
+  const Trace trace = traces::record(scene, machine.numbers, progress).trace;
+  Frame frame = run_frame(trace, machine, Fidelity::functional).rendered.frame;
+  const Comparison comparison = compare(frame, trace, machine, reference);
+  return {std::move(frame), std::move(reference), comparison};
+}
+
 void reproduce_figure12(Findings& findings, const Progress& progress) {
   const Machine machine = machine::load("geforce4-ti4400");
   const std::vector<Shown> models = shown_models();
@@ -38,15 +46,12 @@ void reproduce_figure12(Findings& findings, const Progress& progress) {
   for (const auto& [model, what] : models) {
     const double done = static_cast<double>(pictures.size()), all = static_cast<double>(models.size());
     const traces::Scene scene = traces::parse_scene("[surfels]\n" + model.toml, model.name + ".toml");
-    const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
-    const Trace trace =
-        traces::record(scene, machine.numbers, part(progress, done / all, (done + 1) / all)).trace;
-    const FrameRun run = run_frame(trace, machine, Fidelity::functional);
-    const Comparison c = compare(run.rendered.frame, trace, machine, reference);
+    const ModelPicture drawn = draw_model(scene, machine, part(progress, done / all, (done + 1) / all));
+    const Comparison& c = drawn.comparison;
     pictures.push_back({"fig12-" + model.name,
                         fmt::format("{} ({}), {} surfels", model.name, what, scene.surfels.size()),
-                        picture_of(run.rendered.frame), picture_of(reference),
-                        difference_picture(run.rendered.frame, reference)});
+                        picture_of(drawn.frame), picture_of(drawn.reference),
+                        difference_picture(drawn.frame, drawn.reference)});
     findings.say(fmt::format(
         "fig12 {:<11} {:<20} {:>7} surfels  {:>5.1f} dB  {:>5.1f} dB off edges  {:>2} holes  {:>3} "
         "rounded to black\n",

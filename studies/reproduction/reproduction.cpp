@@ -3,6 +3,8 @@
 #include <array>
 
 #include "studies/reproduction/figure10.h"
+#include "studies/reproduction/figure11.h"
+#include "studies/reproduction/figure12.h"
 #include "studies/reproduction/figure3.h"
 #include "studies/reproduction/table1.h"
 #include "studies/reproduction/table2.h"

@@ -12,7 +12,5 @@ std::span<const Study> reproductions();
 void reproduce_figure4(Findings& findings, const Progress& progress);
 void reproduce_figure5(Findings& findings, const Progress& progress);
 void reproduce_figure8(Findings& findings, const Progress& progress);
-void reproduce_figure11(Findings& findings, const Progress& progress);
-void reproduce_figure12(Findings& findings, const Progress& progress);
 
 }  // namespace splatscope::studies
