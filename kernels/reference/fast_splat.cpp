@@ -93,7 +93,40 @@ HWY_INLINE void quad_box(const FastView& view, const V3& o, const V3& s, const V
                  hn::IfThenElse(beyond, high_y, infinite));
 }
 
-HWY_INLINE void prepare_batch(const FastSurfels& surfels, const FastView& view, std::size_t i, Batch& batch) {
+// The filter of a surfel on the screen.
+struct Filter {
+  V vxx, vxy, vyy;  // variance
+  V inverse;        // of its determinant
+  V height;
+};
+
+// Jacobian (Ren 2002, section 5.2), V = sigma^2 J J^T + I, and |V| in positive terms. `plane` is n.o.
+HWY_INLINE Filter filter_of(const FastView& view, const V3& o, const V3& s, const V3& t, V inverse_z, V plane,
+                            V sigma, V weight) {
+  const V scale = hn::Mul(set(view.eta), square(inverse_z));
+  const auto jacobian_x = [&](const V3& a) HWY_ATTR {
+    return hn::Mul(scale, hn::Sub(hn::Mul(a.x, o.z), hn::Mul(a.z, o.x)));
+  };
+  const auto jacobian_y = [&](const V3& a) HWY_ATTR {
+    return hn::Mul(scale, hn::Sub(hn::Mul(a.z, o.y), hn::Mul(a.y, o.z)));
+  };
+  const V jsx = jacobian_x(s), jsy = jacobian_y(s), jtx = jacobian_x(t), jty = jacobian_y(t);
+  const V sigma2 = square(sigma), low_pass = set(view.low_pass);
+  const V jjxx = hn::Add(square(jsx), square(jtx)), jjyy = hn::Add(square(jsy), square(jty));
+  const V determinant_j = hn::Abs(hn::Mul(hn::Mul(square(set(view.eta)), plane),  // of J: eta^2 n.o / o_z^3
+                                          hn::Mul(square(inverse_z), inverse_z)));
+  const V spread = hn::Add(hn::Mul(sigma2, hn::Add(jjxx, jjyy)), low_pass);
+  const V determinant = hn::Add(square(hn::Mul(sigma2, determinant_j)), hn::Mul(low_pass, spread));
+  return {.vxx = hn::Add(hn::Mul(sigma2, jjxx), low_pass),
+          .vxy = hn::Mul(sigma2, hn::Add(hn::Mul(jsx, jsy), hn::Mul(jtx, jty))),
+          .vyy = hn::Add(hn::Mul(sigma2, jjyy), low_pass),
+          .inverse = hn::Div(set(1.0f), determinant),
+          .height = hn::Mul(hn::Mul(weight, set(0.5f * std::numbers::inv_pi_v<float>)),
+                            hn::Div(determinant_j, hn::Sqrt(determinant)))};
+}
+
+// False where no lane is kept.
+HWY_INLINE bool prepare_batch(const FastSurfels& surfels, const FastView& view, std::size_t i, Batch& batch) {
   const auto load = [&](FastSurfels::Component c)
                         HWY_ATTR { return hn::LoadU(F{}, surfels.values[c].data() + i); };
   const auto direction = [&](V x, V y, V z) HWY_ATTR {
@@ -113,30 +146,11 @@ HWY_INLINE void prepare_batch(const FastSurfels& surfels, const FastView& view, 
   const V zero = hn::Zero(F{}), one = set(1.0f);
   const M facing = view.cull_back_faces ? hn::Lt(plane, zero) : hn::Ne(plane, zero);
   batch.keep = hn::And(facing, hn::Gt(o.z, set(view.near_plane)));
-  if (hn::AllFalse(F{}, batch.keep)) return;
+  if (hn::AllFalse(F{}, batch.keep)) return false;
 
-  // Jacobian (Ren 2002, section 5.2), V = sigma^2 J J^T + I, and |V| in positive terms.
   const V inverse_z = hn::Div(one, o.z);
-  const V scale = hn::Mul(set(view.eta), square(inverse_z));
-  const auto jacobian_x = [&](const V3& a) HWY_ATTR {
-    return hn::Mul(scale, hn::Sub(hn::Mul(a.x, o.z), hn::Mul(a.z, o.x)));
-  };
-  const auto jacobian_y = [&](const V3& a) HWY_ATTR {
-    return hn::Mul(scale, hn::Sub(hn::Mul(a.z, o.y), hn::Mul(a.y, o.z)));
-  };
-  const V jsx = jacobian_x(s), jsy = jacobian_y(s), jtx = jacobian_x(t), jty = jacobian_y(t);
-  const V sigma2 = square(load(FastSurfels::sigma)), low_pass = set(view.low_pass);
-  const V jjxx = hn::Add(square(jsx), square(jtx)), jjyy = hn::Add(square(jsy), square(jty));
-  const V vxx = hn::Add(hn::Mul(sigma2, jjxx), low_pass), vyy = hn::Add(hn::Mul(sigma2, jjyy), low_pass);
-  const V vxy = hn::Mul(sigma2, hn::Add(hn::Mul(jsx, jsy), hn::Mul(jtx, jty)));
-  const V determinant_j = hn::Abs(hn::Mul(hn::Mul(square(set(view.eta)), plane),  // of J: eta^2 n.o / o_z^3
-                                          hn::Mul(square(inverse_z), inverse_z)));
-  const V spread = hn::Add(hn::Mul(sigma2, hn::Add(jjxx, jjyy)), low_pass);
-  const V determinant = hn::Add(square(hn::Mul(sigma2, determinant_j)), hn::Mul(low_pass, spread));
-  const V inverse = hn::Div(one, determinant);
-  const V height = hn::Mul(hn::Mul(load(FastSurfels::weight), set(0.5f * std::numbers::inv_pi_v<float>)),
-                           hn::Div(determinant_j, hn::Sqrt(determinant)));
-
+  const auto [vxx, vxy, vyy, inverse, height] =
+      filter_of(view, o, s, t, inverse_z, plane, load(FastSurfels::sigma), load(FastSurfels::weight));
   const V per_pixel = hn::Div(one, hn::Mul(plane, set(view.eta)));
   const V3 u0 = cross(t, o), u1 = cross(o, s);
   const V x = hn::Add(set(view.center_x), hn::Mul(hn::Mul(set(view.eta), o.x), inverse_z));
@@ -168,6 +182,7 @@ HWY_INLINE void prepare_batch(const FastSurfels& surfels, const FastView& view, 
   batch.ellipse.set_columns(view, hn::Sub(x, reach_x), hn::Add(x, reach_x));
   batch.ellipse.set_rows(view, hn::Sub(y, reach_y), hn::Add(y, reach_y));
   quad_box(view, o, s, t, batch.quad);
+  return true;
 }
 
 HWY_INLINE bool is_empty(const FastBox& box) {
@@ -180,7 +195,7 @@ std::size_t prepare(const FastSurfels& surfels, const FastView& view, std::size_
   std::size_t kept = 0;
   Batch batch;
   for (std::size_t i = begin; i < end; i += lanes) {
-    prepare_batch(surfels, view, i, batch);
+    if (!prepare_batch(surfels, view, i, batch)) continue;
     HWY_ALIGN float keep[FastSurfels::kPadding];
     hn::Store(hn::IfThenElseZero(batch.keep, set(1.0f)), F{}, keep);
     for (std::size_t lane = 0; lane < lanes; ++lane) {

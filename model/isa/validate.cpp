@@ -17,12 +17,28 @@ void reject(const Program& program, const Instruction& at, std::string_view rule
   throw UserError(program.name, at.line, at.column, rule);
 }
 
-unsigned components_read(const Instruction& instruction, int source) {
+namespace {
+
+// Of the operand after its swizzle.
+unsigned lanes_read(const Instruction& instruction, int source) {
   const unsigned mask = instruction.destination.mask;
-  const auto& swizzle = instruction.sources[static_cast<std::size_t>(source)].swizzle;
-  unsigned lanes = mask;  // of the operand after its swizzle
   switch (instruction.opcode) {
+    case Opcode::rcp:
+    case Opcode::rsq:
+    case Opcode::expp:
+    case Opcode::logp:
+    case Opcode::exp:
+    case Opcode::log:
+      return 0x1;
+    case Opcode::bem:
+    case Opcode::texbem:
+      return 0x3;
+    case Opcode::texreg2gb:
+      return 0x6;
     case Opcode::dp3:
+    case Opcode::m3x4:
+    case Opcode::m3x3:
+    case Opcode::m3x2:
     case Opcode::texm3x2pad:
     case Opcode::texm3x2tex:
     case Opcode::texm3x2depth:
@@ -37,49 +53,27 @@ unsigned components_read(const Instruction& instruction, int source) {
     case Opcode::texld:
     case Opcode::texreg2rgb:
     case Opcode::texbeml:  // the third is the luminance
-      lanes = 0x7;
-      break;
+      return 0x7;
+    case Opcode::texreg2ar:
+      return 0x9;
     case Opcode::dp4:
-      lanes = 0xf;
-      break;
-    case Opcode::rcp:
-    case Opcode::rsq:
-    case Opcode::expp:
-    case Opcode::logp:
-    case Opcode::exp:
-    case Opcode::log:
-      lanes = 0x1;
-      break;
-    case Opcode::lit:
-      lanes = (mask & 0x2 ? 0x1u : 0u) | (mask & 0x4 ? 0xbu : 0u);
-      break;
-    case Opcode::dst:
-      lanes = mask & (source == 0 ? 0x6u : 0xau);
-      break;
     case Opcode::m4x4:
     case Opcode::m4x3:
-      lanes = 0xf;
-      break;
-    case Opcode::m3x4:
-    case Opcode::m3x3:
-    case Opcode::m3x2:
-      lanes = 0x7;
-      break;
-    case Opcode::bem:
-      lanes = 0x3;
-      break;
-    case Opcode::texbem:
-      lanes = 0x3;
-      break;
-    case Opcode::texreg2ar:
-      lanes = 0x9;
-      break;
-    case Opcode::texreg2gb:
-      lanes = 0x6;
-      break;
+      return 0xf;
+    case Opcode::lit:
+      return (mask & 0x2 ? 0x1u : 0u) | (mask & 0x4 ? 0xbu : 0u);
+    case Opcode::dst:
+      return mask & (source == 0 ? 0x6u : 0xau);
     default:
-      break;
+      return mask;
   }
+}
+
+}  // namespace
+
+unsigned components_read(const Instruction& instruction, int source) {
+  const unsigned lanes = lanes_read(instruction, source);
+  const auto& swizzle = instruction.sources[static_cast<std::size_t>(source)].swizzle;
   unsigned components = 0;
   for (unsigned lane = 0; lane < 4; ++lane)
     if (lanes & (1u << lane)) components |= 1u << swizzle[lane];

@@ -244,7 +244,6 @@ Machine parse(std::string_view text, std::string_view file) {
     }
     machine = load(name);
   }
-  const bool is_own = !root.contains("base");
   machine.name = std::string(stem(file));
   for (const auto& [key, node] : root) {
     if (key == "base") continue;
@@ -262,7 +261,7 @@ Machine parse(std::string_view text, std::string_view file) {
       read_parameter(machine, fmt::format("{}.{}", key.str(), name.str()), value, file);
     }
   }
-  if (is_own) check_own_machine(machine, {file, 0});
+  if (!root.contains("base")) check_own_machine(machine, {file, 0});
   check_together(machine, {file, 0});
   return machine;
 }
