@@ -11,7 +11,7 @@
 namespace splatscope {
 
 // Which tiles of a frame hold the depth of the last clear in all their pixels, for one band of a triangle at
-// a time.
+// a time. One in which that very depth was written is among them.
 class ClearTiles {
  public:
   explicit ClearTiles(const Frame& frame);  // outlives it

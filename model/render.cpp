@@ -94,13 +94,17 @@ class Renderer {
         rendered_(rendered),
         programs_(trace, options.formats),
         indices_(options.vertex_cache_entries) {
-    std::uint64_t triangles = 0;
-    for (const Command& command : commands)
-      if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
-    sampled_runs_apart_ = sampled_runs_apart(triangles);
     for (std::uint32_t i = 0; i < trace.surfaces; ++i)
       surfaces_.emplace_back(trace.width, trace.height, options.formats);
     output::clear(Clear{}, rendered.frame);
+  }
+
+  // Before the commands [from, to) of a frame.
+  void begin_frame(std::size_t from, std::size_t to) {
+    std::uint64_t triangles = 0;
+    for (const Command& command : commands_.subspan(from, to - from))
+      if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
+    sampled_runs_apart_ = sampled_runs_apart(triangles);
   }
 
   void run(std::size_t command) {
@@ -155,6 +159,7 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
   Renderer renderer(trace, trace.commands, options, rendered);
   std::size_t command = 0;
   for (const std::size_t end : frame_ends(trace)) {
+    renderer.begin_frame(command, end);
     for (; command < end; ++command) {
       if (progress) progress(static_cast<double>(command) / static_cast<double>(trace.commands.size()));
       renderer.run(command);

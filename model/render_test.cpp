@@ -263,9 +263,9 @@ struct Samples {
 };
 
 // Of a record of everything. `written`: the tiles with depth, before and after.
-Samples samples_of(const DrawWork& all, std::uint32_t width, std::set<std::uint32_t>& written) {
+Samples samples_of(const DrawWork& all, std::uint32_t width, bool writes, std::set<std::uint32_t>& written) {
   Samples samples;
-  const auto tile_of = [&](const QuadWork& quad) { return quad.y / 2u * (width / 4) + quad.x / 2u; };
+  const auto tile_of = [&](const QuadWork& quad) { return quad.y / 2u * ((width + 3) / 4) + quad.x / 2u; };
   std::span<const QuadWork> rest = all.quads;
   for (std::uint32_t i = 0; i < all.triangles.size(); ++i) {
     const std::span<const QuadWork> quads = rest.first(all.triangles[i].quad_count);
@@ -275,7 +275,7 @@ Samples samples_of(const DrawWork& all, std::uint32_t width, std::set<std::uint3
       if (all.is_sampled(i) && !written.contains(tile_of(quad)))
         samples.clear_tiles.insert({i, tile_of(quad)});
     for (const QuadWork& quad : quads)
-      if (quad.passed != 0) written.insert(tile_of(quad));
+      if (writes && quad.passed != 0) written.insert(tile_of(quad));
   }
   return samples;
 }
@@ -290,16 +290,34 @@ void expect_samples(const Samples& samples, const DrawWork& work) {
   EXPECT_TRUE(work.shaded_vertices.empty());
 }
 
+// As many as if each frame were alone.
+TEST(Render, SamplesEachFrameByItsOwnTriangles) {
+  Trace trace = many_triangles();
+  const Command draw = trace.commands[0];
+  trace.commands = {draw, Present{}};
+  trace.commands.insert(trace.commands.end(), 6, draw);
+  std::vector<std::uint32_t> apart;
+  for (const DrawWork& work : render(trace, {}).work) apart.push_back(work.sampled_runs_apart);
+  EXPECT_EQ(apart, (std::vector<std::uint32_t>{1, 4, 4, 4, 4, 4, 4}));
+}
+
 // Of all triangles there are the counts.
 TEST(Render, SamplesOfTheWorkAreThoseOfAllOfIt) {
   Trace trace = many_triangles();
-  trace.commands.resize(7, trace.commands[0]);
+  trace.width = 198;
+  trace.height = 201;
+  Draw draw = std::get<Draw>(trace.commands[0]);
+  trace.commands.assign(6, draw);
+  draw.state.depth_write = false;
+  trace.commands.insert(trace.commands.begin(), draw);
   const std::vector<DrawWork> all = on_threads(trace, 1, Record::everything).work;
   std::vector<Samples> samples;
   std::set<std::uint32_t> written;
-  for (const DrawWork& draw : all) samples.push_back(samples_of(draw, trace.width, written));
+  for (const DrawWork& each : all)
+    samples.push_back(samples_of(each, trace.width, each.command != 0, written));
   ASSERT_EQ(all[0].sampled_runs_apart, 4u);
-  ASSERT_GT(samples[0].clear_tiles.size(), 500u) << "of 2500 tiles";
+  ASSERT_GT(samples[0].clear_tiles.size(), 500u) << "of 2550 tiles";
+  ASSERT_GT(samples[1].clear_tiles.size(), 500u);
   ASSERT_GT(samples[0].quads.size(), 1500u);
   for (const std::size_t threads : {1u, 2u, 4u}) {
     const std::vector<DrawWork> some = on_threads(trace, threads, Record::samples).work;

@@ -53,7 +53,6 @@ void add_seeds(const Trace& trace, const Machine& machine, FidelityRow& row) {
         time_frame(trace, work, machine, Fidelity::sampled, {.seed = seed, .heat_maps = nullptr});
     row.seeds.push_back({static_cast<double>(result.cycles), result.cycles_plus_minus});
   }
-  row.seeds.resize(kSampleSeeds, row.seeds.front());
 }
 
 // Utilisations become errors.

@@ -31,7 +31,9 @@ struct FidelityRow {
     double error = 0;
     bool covers() const;  // whether the referee's cycles are in the interval
   };
-  std::vector<Seed> seeds;  // of fidelity sampled: by --seed 0, 1, ..., kSampleSeeds - 1
+  // Of fidelity sampled: by --seed 0, 1, ..., kSampleSeeds - 1; of 0 alone where the frame was simulated
+  // whole.
+  std::vector<Seed> seeds;
 };
 // From the fastest to the one that the others are measured by.
 constexpr Fidelity kFidelityLadder[] = {Fidelity::functional, Fidelity::throughput, Fidelity::sampled,

@@ -250,7 +250,8 @@ void add_fidelity_report(Findings& findings, std::span<const FidelityGroup> grou
       "resolutions) and of the figures that draw other scenes, on both machines. Host seconds hold function "
       "and timing, and are the least of {} runs "
       "(the referee's: of one). Errors are against the referee; those of sampled are of all seeds from 0 to "
-      "{}. Memory is that of the whole process, the trace included.",
+      "{}, of 0 alone where a frame is too small to be sampled. Memory is that of the whole process, the "
+      "trace included.",
       kFidelityRepetitions, kSampleSeeds - 1));
   for (const FidelityGroup& group : groups)
     add_summary(report,

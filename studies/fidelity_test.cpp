@@ -25,7 +25,7 @@ TEST(FidelityStudy, EveryFidelityStandsBesideTheReferee) {
     EXPECT_EQ(row.cycles == 0, row.fidelity == Fidelity::functional);
     EXPECT_EQ(row.units.empty(), row.fidelity == Fidelity::functional);
     EXPECT_LT(std::abs(row.error), 0.1);
-    EXPECT_EQ(row.seeds.size(), row.fidelity == Fidelity::sampled ? kSampleSeeds : 0);
+    EXPECT_EQ(row.seeds.size(), row.fidelity == Fidelity::sampled ? 1u : 0u);
     for (const FidelityRow::Seed& seed : row.seeds) {
       EXPECT_EQ(seed.error, 0);
       EXPECT_TRUE(seed.covers());
@@ -51,7 +51,7 @@ TEST(FidelityStudy, ATableIsSummedUp) {
   EXPECT_EQ(rows.back().resolution, 64);
   const std::string text = fidelity_text({"Table 2", rows});
   EXPECT_TRUE(text.starts_with("Table 2, 2 frames against the referee\n")) << text;
-  EXPECT_NE(text.find("covers 20 of 20\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("covers 2 of 2\n"), std::string::npos) << text;
 }
 
 TEST(FidelityStudy, AnEstimateHasNoEventHash) {

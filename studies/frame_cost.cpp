@@ -7,14 +7,14 @@
 namespace splatscope::studies {
 
 FrameCost cost_of(const Trace& trace, const Machine& machine, Fidelity fidelity, int runs) {
-  const bool is_measured = restart_peak_memory();
   FrameCost cost;
   for (int i = 0; i < runs; ++i) {
+    const bool is_measured = restart_peak_memory();
     FrameRun run = run_frame(trace, machine, fidelity);
     cost.seconds = i == 0 ? run.host_seconds : std::min(cost.seconds, run.host_seconds);
     cost.timing = std::move(run.timing);
+    if (is_measured) cost.megabytes = peak_megabytes();
   }
-  if (is_measured) cost.megabytes = peak_megabytes();
   return cost;
 }
 

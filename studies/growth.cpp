@@ -45,7 +45,8 @@ GrowthRow row_of(int side, const Machine& machine) {
   if (is_measured) row.trace_megabytes = peak_megabytes() - before;
   const auto cost = [&](Fidelity fidelity) {
     FrameCost cost = cost_of(trace, machine, fidelity, runs);
-    if (is_measured) cost.megabytes -= before;
+    if (cost.megabytes > 0) cost.megabytes -= before;
+    cost.timing.reset();  // it would be in the next one's memory
     return cost;
   };
   row.functional = cost(Fidelity::functional);

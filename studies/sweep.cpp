@@ -81,7 +81,7 @@ WorkStream work_of(const Trace& trace, const Machine& machine, const std::option
   }
   const std::string key = work_key(trace, options);
   WorkStream stream;
-  const WorkCache::Found found = cache->read(key, stream);
+  const WorkCache::Found found = cache->read(key, trace, stream);
   if (found == WorkCache::Found::yes) {
     ++sweep.from_cache;
     return stream;

@@ -93,7 +93,9 @@ TEST_F(Sweeps, TheFunctionIsComputedForEachOfItsFormats) {
 TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
   const std::vector<SweptParameter> swept{{"vertex.units", {"1", "2"}}};
   const std::filesystem::path cache = folder / "cache";
-  const auto sweep = [&] { return run_sweep(file, machine, swept, Fidelity::cycle, cache); };
+  const auto sweep = [&](Fidelity fidelity = Fidelity::cycle) {
+    return run_sweep(file, machine, swept, fidelity, cache);
+  };
   const Sweep first = sweep();
   EXPECT_EQ(first.functions, 1u);
   EXPECT_EQ(first.from_cache, 0u);
@@ -109,6 +111,11 @@ TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
   EXPECT_EQ(third.damaged, std::vector{stored});
   EXPECT_EQ(third.points[1].results, first.points[1].results);
   EXPECT_EQ(sweep().from_cache, 1u);
+
+  const Sweep estimate = sweep(Fidelity::throughput);
+  EXPECT_EQ(estimate.from_cache, 1u);
+  EXPECT_EQ(estimate.points[1].results,
+            run_sweep(file, machine, swept, Fidelity::throughput, {}).points[1].results);
 }
 
 TEST_F(Sweeps, WrongInputIsAUsersError) {
@@ -167,17 +174,17 @@ TEST_F(WorkCaches, WhatIsCutShortIsNotTaken) {
   const Rendered rendered = render(trace, {});
   cache.write("k", {rendered.work, rendered.counters});
   WorkStream stream;
-  ASSERT_EQ(cache.read("k", stream), WorkCache::Found::yes);
+  ASSERT_EQ(cache.read("k", trace, stream), WorkCache::Found::yes);
   ASSERT_EQ(stream.work.size(), rendered.work.size());
   EXPECT_EQ(stream.work[0].shaded_vertices, rendered.work[0].shaded_vertices);
   EXPECT_EQ(stream.work[0].quads.size(), rendered.work[0].quads.size());
   EXPECT_EQ(stream.counters.fragments, rendered.counters.fragments);
-  EXPECT_EQ(cache.read("another", stream), WorkCache::Found::no);
+  EXPECT_EQ(cache.read("another", trace, stream), WorkCache::Found::no);
   const auto size = std::filesystem::file_size(cache.path_of("k"));
   for (const std::uintmax_t left :
        {size - 1, size / 2, std::uintmax_t{24}, std::uintmax_t{3}, std::uintmax_t{0}}) {
     std::filesystem::resize_file(cache.path_of("k"), left);
-    EXPECT_EQ(cache.read("k", stream), WorkCache::Found::damaged) << left << " bytes";
+    EXPECT_EQ(cache.read("k", trace, stream), WorkCache::Found::damaged) << left << " bytes";
   }
 }
 
@@ -194,8 +201,27 @@ TEST_F(WorkCaches, WhatIsOfAnotherLayoutIsNotTaken) {
     const std::uint64_t header[] = {body.size(), XXH64(body.data(), body.size(), 0)};
     std::ofstream(cache.path_of("k"), std::ios::binary)
         << magic << std::string(reinterpret_cast<const char*>(header), sizeof header) << body;
-    EXPECT_EQ(cache.read("k", stream), WorkCache::Found::damaged) << body.size() << " bytes";
+    EXPECT_EQ(cache.read("k", trace, stream), WorkCache::Found::damaged) << body.size() << " bytes";
   }
+}
+
+TEST_F(WorkCaches, WhatLiesOutsideOfTheFrameIsNotTaken) {
+  const WorkCache cache(folder / "cache");
+  const Rendered rendered = render(trace, {});
+  ASSERT_FALSE(rendered.work[0].clear_tiles.empty());
+  const auto found_with = [&](auto change) {
+    WorkStream stream{rendered.work, rendered.counters};
+    change(stream.work[0]);
+    cache.write("k", stream);
+    return cache.read("k", trace, stream);
+  };
+  using Found = WorkCache::Found;
+  EXPECT_EQ(found_with([](DrawWork&) {}), Found::yes);
+  EXPECT_EQ(found_with([](DrawWork& work) { work.sampled_runs_apart = 3; }), Found::damaged);
+  EXPECT_EQ(found_with([](DrawWork& work) { work.sampled_runs_apart = 0; }), Found::damaged);
+  EXPECT_EQ(found_with([](DrawWork& work) { work.clear_tiles[0].tile = 16 * 16; }), Found::damaged);
+  EXPECT_EQ(found_with([](DrawWork& work) { work.quads[0].x = 32; }), Found::damaged);
+  EXPECT_EQ(found_with([](DrawWork& work) { work.quads[0].y = 32; }), Found::damaged);
 }
 
 // No byte that nobody has written, so of whatever memory the stream stands in.
@@ -215,7 +241,7 @@ TEST_F(WorkCaches, TheSameStreamIsTheSameBytes) {
   cache.write("b", {elsewhere, rendered.counters});
   EXPECT_TRUE(bytes_of(cache.path_of("a")) == bytes_of(cache.path_of("b")));
   WorkStream stream;
-  ASSERT_EQ(cache.read("b", stream), WorkCache::Found::yes);
+  ASSERT_EQ(cache.read("b", trace, stream), WorkCache::Found::yes);
   cache.write("c", stream);
   EXPECT_TRUE(bytes_of(cache.path_of("a")) == bytes_of(cache.path_of("c")));
 }

@@ -4,6 +4,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -128,8 +129,21 @@ class Reader {
   std::string_view text_;
 };
 
-// As `write` has it; throws std::out_of_range where the text is not that.
-WorkStream stream_of(std::string_view body) {
+// Whether all that it names lies in the frame of `trace`.
+bool fits(const DrawWork& work, const Trace& trace) {
+  const auto tiles = [](std::uint32_t pixels) { return (pixels + kFrameTileEdge - 1) / kFrameTileEdge; };
+  const auto in_frame = [&](const QuadWork& quad) {
+    return 2u * quad.x < trace.width && 2u * quad.y < trace.height;
+  };
+  const auto is_tile = [&](const ClearTile& each) {
+    return each.tile < tiles(trace.width) * tiles(trace.height);
+  };
+  return std::has_single_bit(work.sampled_runs_apart) && std::ranges::all_of(work.quads, in_frame) &&
+         std::ranges::all_of(work.clear_tiles, is_tile);
+}
+
+// As `write` has it; throws std::out_of_range where the text is not that, or not of `trace`.
+WorkStream stream_of(std::string_view body, const Trace& trace) {
   WorkStream stream;
   Reader reader(body);
   reader.take(stream.counters);
@@ -137,12 +151,12 @@ WorkStream stream_of(std::string_view body) {
   for (DrawWork& work : stream.work) {
     reader.take(work.command);
     reader.take(work.sampled_runs_apart);
-    if (!std::has_single_bit(work.sampled_runs_apart)) throw std::out_of_range("work stream");
     reader.take(work.shaded_vertices);
     reader.take(work.triangles);
     reader.take(work.quads);
     reader.take(work.texel_blocks);
     reader.take(work.clear_tiles);
+    if (!fits(work, trace)) throw std::out_of_range("work stream");
   }
   if (!reader.at_end()) throw std::out_of_range("work stream");
   return stream;
@@ -175,7 +189,7 @@ std::filesystem::path WorkCache::path_of(const std::string& key) const {
   return folder_.path() / (key + ".work");
 }
 
-WorkCache::Found WorkCache::read(const std::string& key, WorkStream& stream) const {
+WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, WorkStream& stream) const {
   if (!std::filesystem::exists(path_of(key))) return Found::no;
   const std::string bytes = bytes_of(path_of(key));
   Header header;
@@ -186,8 +200,8 @@ WorkCache::Found WorkCache::read(const std::string& key, WorkStream& stream) con
       header.checksum != hash_of(body.data(), body.size(), 0))
     return Found::damaged;
   try {
-    stream = stream_of(body);
-  } catch (const std::out_of_range&) {  // of another layout
+    stream = stream_of(body, trace);
+  } catch (const std::out_of_range&) {  // of another layout or trace
     return Found::damaged;
   }
   return Found::yes;

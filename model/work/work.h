@@ -51,7 +51,7 @@ struct ClearTile {
 // Estimates look at the quads of some triangles only: of the first run of a draw, and of each so many runs
 // behind it. With runs half as long, the caches hold too little of what comes before.
 inline constexpr std::size_t kSampledRun = 128;
-// By the triangles of a trace: all of a small one, one run in 32 of a large one; a power of two.
+// By the triangles of a frame: all of a small one, one run in 32 of a large one; a power of two.
 constexpr std::uint32_t sampled_runs_apart(std::uint64_t triangles) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(std::bit_floor(triangles / 8192), 1, 32));
 }
