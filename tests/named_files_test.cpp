@@ -57,14 +57,18 @@ TEST_F(NamedFiles, OfAMesh) {
   folder_.file("mesh.toml", "[surfels]\nfile = \"square.obj\"\ncount = 20\n");
   folder_.file("square.obj",
                "mtllib square.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
-  folder_.file("square.mtl", "newmtl paint\nKd 1 0 0\nmap_Kd frame.png\n");
+  folder_.file("square.mtl", "newmtl paint\nKd 1 0 0\nmap_Kd frame.png\nmap_Bump bump.png\nmap_d d.png\n");
   folder_.file("frame.png", "no picture, which is read as one");
   expect_refused({"record", "mesh.toml", "-o", "square.obj"}, "by -o and by the scene (square.obj)");
   expect_refused({"record", "mesh.toml", "-o", "square.mtl"}, "square.mtl: is named by -o and by the mesh");
   expect_refused({"sample", "square.obj", "-n", "20", "-o", "square.mtl"}, "by -o and by the mesh");
   expect_refused({"sample", "square.obj", "-n", "20", "-o", "frame.png"},
                  "by -o and by the mesh (frame.png)");
+  for (const char* texture : {"bump.png", "d.png"})
+    expect_refused({"sample", "square.obj", "-n", "20", "-o", texture}, "by -o and by the mesh");
   expect_refused({"run", "mesh.toml", "--out", "."}, "by the mesh and by a result in --out");
+  folder_.file("bare.obj", "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  expect_refused({"sample", "bare.obj", "-n", "20", "-o", "paint.mtl"}, "by -o and by the mesh (paint.mtl)");
 }
 
 TEST_F(NamedFiles, OfAVolume) {

@@ -30,9 +30,9 @@ class Unmarked : public Assimp::IOStream {
 }  // namespace
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
+  files_.emplace_back(file);
   std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
   if (!stream) return nullptr;
-  files_.emplace_back(file);
   char start[kByteOrderMark.size()];
   const bool marked =
       stream->Read(start, sizeof(start), 1) == 1 && std::string_view(start, sizeof(start)) == kByteOrderMark;

@@ -8,7 +8,7 @@
 namespace splatscope::traces {
 
 // How assimp reads files here: without the byte order mark that some editors put before a text, which its
-// readers of OBJ and PLY stumble over; and each is noted in `files`.
+// readers of OBJ and PLY stumble over; and each is noted in `files`, also where it cannot be opened.
 class AssimpFiles : public Assimp::DefaultIOSystem {
  public:
   explicit AssimpFiles(std::vector<std::filesystem::path>& files) : files_(files) {}

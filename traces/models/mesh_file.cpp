@@ -65,16 +65,16 @@ struct Materials {
   }
 };
 
-std::optional<TextureImage> texture_of(const aiScene& scene, const std::string& name,
-                                       const std::filesystem::path& folder,
-                                       std::vector<std::filesystem::path>& files) {
-  const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str());
-  if (!embedded) {
-    std::string path = name;
-    std::ranges::replace(path, '\\', '/');
-    files.push_back(folder / path);
-    return read_texture(files.back());
-  }
+// The file of a texture that is not in the mesh's own.
+std::filesystem::path texture_file(std::string name, const std::filesystem::path& folder) {
+  std::ranges::replace(name, '\\', '/');
+  return folder / name;
+}
+
+std::optional<TextureImage> texture_of(const aiScene& scene, const aiString& name,
+                                       const std::filesystem::path& folder) {
+  const aiTexture* embedded = scene.GetEmbeddedTexture(name.C_Str());
+  if (!embedded) return read_texture(texture_file(name.C_Str(), folder));
   if (embedded->mHeight == 0)
     return read_texture(
         std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)),
@@ -117,13 +117,28 @@ class Reader {
       for (aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
         aiString texture;
         if (scene_.mMaterials[i]->GetTexture(type, 0, &texture) != aiReturn_SUCCESS) continue;
-        material.texture = texture_of(scene_, texture.C_Str(), path_.parent_path(), file_.files);
+        material.texture = texture_of(scene_, texture, path_.parent_path());
         if (!material.texture) ++file_.textures_unreadable;
         break;
       }
+      note_texture_files(*scene_.mMaterials[i]);
       materials_->materials.push_back(std::move(material));
     }
     if (materials_->materials.empty()) materials_->materials.emplace_back();
+  }
+
+  // Those of all kinds, bump maps and the like, not only those that colour the surfels.
+  void note_texture_files(const aiMaterial& material) {
+    for (unsigned i = 0; i < material.mNumProperties; ++i) {
+      const aiMaterialProperty& property = *material.mProperties[i];
+      aiString name;
+      if (std::string_view(property.mKey.C_Str()) != _AI_MATKEY_TEXTURE_BASE) continue;
+      if (material.Get(_AI_MATKEY_TEXTURE_BASE, property.mSemantic, property.mIndex, name) !=
+          aiReturn_SUCCESS)
+        continue;
+      if (!scene_.GetEmbeddedTexture(name.C_Str()))
+        file_.files.push_back(texture_file(name.C_Str(), path_.parent_path()));
+    }
   }
 
   void add(const aiNode& node, const aiMatrix4x4& parent) {
