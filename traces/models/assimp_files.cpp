@@ -1,6 +1,8 @@
 #include "traces/models/assimp_files.h"
 
+#include <algorithm>
 #include <assimp/IOStream.hpp>
+#include <cctype>
 #include <memory>
 #include <string_view>
 
@@ -8,6 +10,11 @@
 
 namespace splatscope::traces {
 namespace {
+
+bool may_be_marked(const std::filesystem::path& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".obj" || ending == ".mtl" || ending == ".ply";
+}
 
 // A file from behind its byte order mark on.
 class Unmarked : public Assimp::IOStream {
@@ -29,10 +36,16 @@ class Unmarked : public Assimp::IOStream {
 
 }  // namespace
 
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
   files_.emplace_back(file);
   std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
-  if (!stream) return nullptr;
+  if (!stream || !may_be_marked(file)) return stream.release();
   char start[kByteOrderMark.size()];
   const bool marked =
       stream->Read(start, sizeof(start), 1) == 1 && std::string_view(start, sizeof(start)) == kByteOrderMark;

@@ -3,12 +3,17 @@
 #include <assimp/DefaultIOSystem.h>
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace splatscope::traces {
 
-// How assimp reads files here: without the byte order mark that some editors put before a text, which its
-// readers of OBJ and PLY stumble over; and each is noted in `files`, also where it cannot be opened.
+// Of a file's name, in small letters: ".obj".
+std::string ending_of(const std::filesystem::path& path);
+
+// How assimp reads files here: .obj, .mtl and .ply without the byte order mark that some editors put before a
+// text, which its readers of these stumble over (in a binary file the same bytes are data); and each is noted
+// in `files`, also where it cannot be opened.
 class AssimpFiles : public Assimp::DefaultIOSystem {
  public:
   explicit AssimpFiles(std::vector<std::filesystem::path>& files) : files_(files) {}

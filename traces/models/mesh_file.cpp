@@ -18,12 +18,6 @@
 namespace splatscope::traces {
 namespace {
 
-std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending;
-}
-
 // An OFF file says how much is in it; assimp takes memory for that before it looks.
 void check_off_size(const std::filesystem::path& path, std::uintmax_t file_size) {
   std::ifstream in(path);

@@ -108,6 +108,27 @@ TEST_F(MeshFileTest, AByteOrderMarkIsPassedOver) {
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   EXPECT_EQ(scene_of("m.ply", mark + std::string(ply)).mesh.triangles, 1u);
+  file("red.MTL", mark + "newmtl red\nKd 1 0 0\n");
+  const Scene red = scene_of("red.OBJ", mark + "mtllib red.MTL\nusemtl red\n" + std::string(kSquare),
+                             "count = 50\nshading = 0\n");
+  ASSERT_EQ(red.surfels.size(), 50u);
+  EXPECT_EQ(red.surfels[0].color, glm::vec3(1, 0, 0));
+}
+
+TEST_F(MeshFileTest, ABinaryFileMayBeginLikeAByteOrderMark) {
+  std::string buffer("\xEF\xBB\xBF\0", 4);  // passed over by the view of it
+  for (const float number : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f})
+    buffer.append(reinterpret_cast<const char*>(&number), sizeof(number));
+  file("m.bin", buffer);
+  const Scene scene =
+      scene_of("m.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteOffset": 4, "byteLength": 36}],
+    "buffers": [{"uri": "m.bin", "byteLength": 40}]})");
+  EXPECT_EQ(scene.mesh.triangles, 1u);
+  for (const Surfel& s : scene.surfels) EXPECT_EQ(s.normal, glm::vec3(0, 0, 1));
 }
 
 // 2 x 2 texels: red, green above, blue, white below. Each corner of the square has one of them.
