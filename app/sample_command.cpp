@@ -36,9 +36,10 @@ void sample(const Options& options, bool quiet) {
   traces::SampledModel sampled;
   {
     ProgressBar progress("sampling", quiet);
-    sampled = traces::sample_source(options.source, "", progress.callback());
+    sampled = traces::sample_source(
+        options.source, "", progress.callback(),
+        [&](const std::vector<traces::NamedFile>& read) { traces::expect_apart(written, read); });
   }
-  traces::expect_apart(written, sampled.files);
   traces::write_ply(sampled.surfels, options.out);
   std::cout << fmt::format("{}: {}\n", options.out, traces::describe(sampled));
 }

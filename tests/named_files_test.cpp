@@ -71,6 +71,14 @@ TEST_F(NamedFiles, OfAMesh) {
   expect_refused({"sample", "bare.obj", "-n", "20", "-o", "paint.mtl"}, "by -o and by the mesh (paint.mtl)");
 }
 
+// Sampling can take minutes: this mesh is one that it would refuse.
+TEST_F(NamedFiles, OfAMeshBeforeItIsSampled) {
+  folder_.file("flat.obj", "mtllib flat.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  folder_.file("flat.mtl", "newmtl paint\n");
+  expect_refused({"sample", "flat.obj", "-o", "o.ply"}, "no triangle of it has a surface");
+  expect_refused({"sample", "flat.obj", "-o", "flat.mtl"}, "by -o and by the mesh (flat.mtl)");
+}
+
 TEST_F(NamedFiles, OfAVolume) {
   folder_.file("grid.toml", "[volume]\nfile = \"a.nhdr\"\npositions = \"p.nhdr\"\n");
   folder_.file("a.nhdr", grid("", "data file: frame.exr\n"));

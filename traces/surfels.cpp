@@ -81,20 +81,22 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
 }  // namespace
 
 SampledModel sample_source(const SurfelSource& source, const std::filesystem::path& folder,
-                           const std::function<void(double)>& progress) {
+                           const std::function<void(double)>& progress,
+                           const std::function<void(const std::vector<NamedFile>&)>& files_read) {
   Model model;
   MeshCounts counts;
-  std::vector<NamedFile> files;
   if (source.file.empty()) {
     model = make_procedural(source.generator);
     counts.triangles = model.mesh.triangles.size();
   } else {
     MeshFile file = read_mesh(folder / source.file);
+    std::vector<NamedFile> files;
+    for (std::filesystem::path& part : file.files) files.push_back({"the mesh", std::move(part)});
+    if (files_read) files_read(files);
     counts = mend(file.model.mesh);
     counts.triangles_out_of_range += file.faces_out_of_range;
     counts.textures_unreadable = file.textures_unreadable;
     model = std::move(file.model);
-    for (std::filesystem::path& part : file.files) files.push_back({"the mesh", std::move(part)});
     if (model.mesh.triangles.empty())
       throw UserError((folder / source.file).string(), 0, "no triangle of it has a surface, expected a mesh");
   }
@@ -107,7 +109,7 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
   options.shading = source.shading;
   options.neighbours = source.neighbours;
   ModelSurfels made = sample_model(model, options, progress);
-  SampledModel result{std::move(made.surfels), counts, made.copies, 0, std::move(files)};
+  SampledModel result{std::move(made.surfels), counts, made.copies, 0};
   const auto cannot_be_drawn = [](const Surfel& s) { return !(s.radius > 0); };
   result.zero_radius = static_cast<std::size_t>(std::ranges::count_if(result.surfels, cannot_be_drawn));
   return result;
@@ -130,10 +132,12 @@ Surfels make_surfels(const SceneSettings& settings, const std::filesystem::path&
       throw UserError((folder / source.file).string(), 0, "no vertices, expected the surfels of a scene");
     return complete(std::move(points), settings);
   }
-  SampledModel sampled = sample_source(source, folder, progress);
+  std::vector<NamedFile> files;
+  SampledModel sampled =
+      sample_source(source, folder, progress, [&](const std::vector<NamedFile>& read) { files = read; });
   Surfels result = complete({std::move(sampled.surfels), true, true, {}}, settings);
   result.mesh = sampled.mesh;
-  result.files = std::move(sampled.files);
+  result.files = std::move(files);
   return result;
 }
 
