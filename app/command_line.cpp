@@ -54,7 +54,8 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// An empty word means nothing to any option; it comes from a variable of a script that is not set.
+// An empty word means nothing to any option; it comes from a variable of a script that is not set. CLI11
+// checks no empty word for an option whose value can be left out: --reference looks at its own.
 void refuse_empty_values(CLI::App& command) {
   const auto check = [](const std::string& value) {
     return value.empty() ? std::string("\"\" is empty, expected a name or a value") : std::string();

@@ -70,8 +70,20 @@ TEST_F(Arguments, NoneIsEmpty) {
   refused({"shader", "debug", "a.vs", "--registers", ""}, "--registers");
   refused({"machine", "show", ""}, "NAME");
   refused({"study", ""}, "NAME");
+  for (const char* option : {"--reference", "--reference="})
+    expect_refused({"run", "s.toml", "--out", "o", option, ""},
+                   "--reference: unknown map \"\", expected affine or perspective");
   expect_refused({"run", "s.toml", "--program", "splat_ewa.vs=", "--out", "o"},
                  "--program: \"splat_ewa.vs=\", expected NAME=FILE");
+}
+
+// As without the equals sign.
+TEST_F(Arguments, AReferenceIsAffineWhereNothingFollowsIt) {
+  for (const char* option : {"--reference", "--reference="}) {
+    const Outcome outcome = run_program({"run", "s.toml", "--out", "o", option}, folder_.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_NE(outcome.out.find("against the reference: PSNR"), std::string::npos) << outcome.out;
+  }
 }
 
 TEST_F(Arguments, RangesCanBeRead) {
