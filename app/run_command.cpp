@@ -21,6 +21,8 @@
 namespace splatscope::app {
 namespace {
 
+// The cycle of the next row is a sum of 64 bits, which must not overflow: 2^63 would do. This number can be
+// read, and no run comes near it: at 300 MHz it is nearly an hour of the machine's time.
 constexpr std::uint64_t kMostCyclesARow = 1'000'000'000'000;
 
 struct Options {
