@@ -4,16 +4,11 @@
 #include <bit>
 
 namespace splatscope {
-namespace {
-
-constexpr std::uint32_t tiles(std::uint32_t pixels) {
-  return (pixels + kFrameTileEdge - 1) / kFrameTileEdge;
-}
-
-}  // namespace
 
 ClearTiles::ClearTiles(const Frame& frame)
-    : frame_(frame), across_(tiles(frame.width)), clear_(std::size_t{across_} * tiles(frame.height), 0) {}
+    : frame_(frame),
+      across_(frame_tiles(frame.width)),
+      clear_(std::size_t{across_} * frame_tiles(frame.height), 0) {}
 
 bool ClearTiles::is_clear(std::uint32_t column, std::uint32_t row) const {
   const std::uint32_t left = column * kFrameTileEdge, right = std::min(left + kFrameTileEdge, frame_.width);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "studies/frame_cost.h"
 #include "studies/measure.h"
@@ -111,17 +112,23 @@ void study_saving(Findings& findings, const Progress& progress) {
   findings.result("units_left_out", {{"cycle_saving", cycle.share()}, {"referee_saving", referee.share()}});
 }
 
-std::vector<FidelityRow> all_table1_rows(const Progress& progress) {
+std::vector<FidelityRow> rows_of(std::span<const FidelityFrame> frames, const Progress& progress) {
+  const auto all = static_cast<double>(frames.size());
   std::vector<FidelityRow> rows;
   double done = 0;
-  for (const std::string_view ready : kTable1) {
-    const double next = done + 1.0 / std::size(kTable1);
-    const auto frame =
-        fidelity_rows(frame_of(traces::load_scene(ready)), kFidelityRepetitions, part(progress, done, next));
-    rows.insert(rows.end(), frame.begin(), frame.end());
-    done = next;
+  for (const FidelityFrame& frame : frames) {
+    const auto more =
+        fidelity_rows(frame, kFidelityRepetitions, part(progress, done / all, (done + 1) / all));
+    rows.insert(rows.end(), more.begin(), more.end());
+    ++done;
   }
   return rows;
+}
+
+std::vector<FidelityFrame> table1_frames() {
+  std::vector<FidelityFrame> frames;
+  for (const std::string_view ready : kTable1) frames.push_back(frame_of(traces::load_scene(ready)));
+  return frames;
 }
 
 std::vector<FidelityRow> all_table2_rows(const Progress& progress) {
@@ -139,20 +146,6 @@ std::vector<FidelityRow> all_table2_rows(const Progress& progress) {
       rows.insert(rows.end(), frame.begin(), frame.end());
       done = next;
     }
-  }
-  return rows;
-}
-
-std::vector<FidelityRow> all_figure_rows(const Progress& progress) {
-  const std::vector<FidelityFrame> frames = figure_frames();
-  const auto all = static_cast<double>(frames.size());
-  std::vector<FidelityRow> rows;
-  double done = 0;
-  for (const FidelityFrame& frame : frames) {
-    const auto more =
-        fidelity_rows(frame, kFidelityRepetitions, part(progress, done / all, (done + 1) / all));
-    rows.insert(rows.end(), more.begin(), more.end());
-    ++done;
   }
   return rows;
 }
@@ -219,9 +212,9 @@ void study_fidelity(Findings& findings, const Progress& progress) {
     groups.push_back({name, std::move(rows)});
     findings.say(fidelity_text(groups.back()));
   };
-  add("Table 1", all_table1_rows(part(progress, 0, 0.2)));
+  add("Table 1", rows_of(table1_frames(), part(progress, 0, 0.2)));
   add("Table 2", all_table2_rows(part(progress, 0.2, 0.8)));
-  add("Figures", all_figure_rows(part(progress, 0.8, 0.95)));
+  add("Figures", rows_of(figure_frames(), part(progress, 0.8, 0.95)));
   add_fidelity_report(findings, groups);
   study_saving(findings, part(progress, 0.95, 1));
 }

@@ -131,12 +131,11 @@ class Reader {
 
 // Whether all that it names lies in the frame of `trace`.
 bool fits(const DrawWork& work, const Trace& trace) {
-  const auto tiles = [](std::uint32_t pixels) { return (pixels + kFrameTileEdge - 1) / kFrameTileEdge; };
   const auto in_frame = [&](const QuadWork& quad) {
     return 2u * quad.x < trace.width && 2u * quad.y < trace.height;
   };
   const auto is_tile = [&](const ClearTile& each) {
-    return each.tile < tiles(trace.width) * tiles(trace.height);
+    return each.tile < frame_tiles(trace.width) * frame_tiles(trace.height);
   };
   return std::has_single_bit(work.sampled_runs_apart) && std::ranges::all_of(work.quads, in_frame) &&
          std::ranges::all_of(work.clear_tiles, is_tile);

@@ -41,6 +41,10 @@ inline constexpr std::uint32_t kTexelBlockEdge = 4;
 
 // 4x4 pixels of the frame, numbered by rows: what a cache line of it holds.
 inline constexpr std::uint32_t kFrameTileEdge = 4;
+// Along a side of so many pixels; the last may lie in part beyond it.
+constexpr std::uint32_t frame_tiles(std::uint32_t pixels) {
+  return (pixels + kFrameTileEdge - 1) / kFrameTileEdge;
+}
 
 // A tile in which a sampled triangle covers pixels, and where all depth is still that of the last clear.
 struct ClearTile {

@@ -13,8 +13,7 @@ struct FrameLines {
   std::uint32_t bytes_per_pixel = 4;
 
   static FrameLines of(std::uint32_t width, std::uint32_t height, std::uint32_t bytes_per_pixel) {
-    const auto tiles = [](std::uint32_t pixels) { return (pixels + kFrameTileEdge - 1) / kFrameTileEdge; };
-    return {tiles(width), tiles(height), bytes_per_pixel};
+    return {frame_tiles(width), frame_tiles(height), bytes_per_pixel};
   }
   std::uint32_t line_of(const QuadWork& quad) const { return quad.y / 2u * tiles_across + quad.x / 2u; }
   std::uint32_t line_bytes() const { return kFrameTileEdge * kFrameTileEdge * bytes_per_pixel; }
