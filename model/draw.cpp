@@ -8,6 +8,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "model/clear_tiles.h"
 #include "model/fragment_pipe.h"
@@ -33,17 +34,46 @@ struct Band {
 
 using Windows = std::span<raster::Window, raster::kMaxWindows>;
 
+// A draw on its way, of which batches are in flight.
+struct DrawInFlight {
+  DrawInFlight(DrawTask task, Frame& target, Record record)
+      : bindings(task.bindings),
+        frame(target),
+        work(std::move(task.work)),
+        depth{target.depth,
+              {target.width, target.height},
+              target.formats.depth,
+              bindings.draw.state.depth_test,
+              bindings.draw.state.depth_write} {
+    if (record == Record::nothing) return;
+    work.samples_only = record == Record::samples;
+    work.triangles.reserve(bindings.draw.index_count / 3);
+    if (bindings.draw.state.depth_test || bindings.draw.state.depth_write) clear_tiles.emplace(target);
+  }
+
+  DrawBindings bindings;
+  Frame& frame;
+  DrawWork work;
+  raster::DepthTarget depth;
+  std::optional<ClearTiles> clear_tiles;  // where depth is recorded
+};
+
 // A batch of triangles on its way.
 class Batch {
  public:
-  // `record`: where its work goes; null: into `own_work`, until it is its turn.
-  Batch(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork* record)
-      : geometry(bindings, options, primitive::Viewport{frame.width, frame.height}),
-        work(record != nullptr ? *record : own_work),
-        pipe(bindings, geometry.attributes(), frame,
-             [this](const auto& colors, auto pixels) { take(colors, pixels); }),
-        state_(bindings.draw.state),
-        frame_(frame) {}
+  Batch(const RenderOptions& options, std::uint32_t width, std::uint32_t height)
+      : geometry(options, primitive::Viewport{width, height}),
+        pipe(geometry.attributes(), width, options.formats,
+             [this](const auto& colors, auto pixels) { take(colors, pixels); }) {}
+
+  // `alone`: no other batch is in flight, so its work needs not wait for its turn.
+  void bind(std::shared_ptr<DrawInFlight> next, bool alone) {
+    geometry.bind(next->bindings);
+    pipe.bind(next->bindings);
+    draw = std::move(next);  // after these: they look at the one before
+    work = alone ? &draw->work : &own_work;
+    packs_ = output::packs(state(), draw->frame.formats);
+  }
 
   void begin(bool write_at_once) {
     at_once = write_at_once;
@@ -67,65 +97,53 @@ class Batch {
   std::span<const raster::Window> windows() const { return std::span(windows_).first(window_count_); }
 
   void write() {
-    if (packs_) return output::write_packed(packed_, pixels_, state_, frame_);
+    if (packs_) return output::write_packed(packed_, pixels_, state(), draw->frame);
     const auto& [r, g, b, a] = colors_;
-    output::write_colors({r.data(), g.data(), b.data(), a.data()}, pixels_, state_, frame_);
+    output::write_colors({r.data(), g.data(), b.data(), a.data()}, pixels_, state(), draw->frame);
   }
 
   // Orders its last stage before the next filling: oneTBB counts the tokens, but its count releases nothing.
   void hand_back() { handed_back_.store(true, std::memory_order_release); }
   void take_again() { handed_back_.exchange(false, std::memory_order_acquire); }
 
+  const DrawState& state() const { return draw->bindings.draw.state; }
+
+  std::shared_ptr<DrawInFlight> draw;
+  bool last = false;  // of its draw
   GeometryBatch geometry;
   DrawWork own_work;
-  DrawWork& work;
+  DrawWork* work = nullptr;  // where its own goes
   FragmentPipe pipe;
   bool at_once = false;  // depth, shading and writing together, when its turn to be written comes
   std::vector<Band> bands;
 
  private:
   void take(const FragmentPipe::Colors& colors, std::span<const std::uint32_t> pixels) {
-    if (at_once) return output::write_colors(colors, pixels, state_, frame_);
+    if (at_once) return output::write_colors(colors, pixels, state(), draw->frame);
     const std::size_t first = pixels_.size();
     pixels_.insert(pixels_.end(), pixels.begin(), pixels.end());
     const auto room = [&](auto& values) {
       values.resize(pixels_.size() + output::kLanes);
       return values.data() + first;
     };
-    if (packs_) return output::pack_colors(colors, pixels.size(), state_, room(packed_));
+    if (packs_) return output::pack_colors(colors, pixels.size(), state(), room(packed_));
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(colors[c], pixels.size(), room(colors_[c]));
   }
 
-  const DrawState& state_;
-  Frame& frame_;
   std::vector<raster::Window> windows_;  // of all bands
   std::size_t window_count_ = 0;
   // What is shaded and waits to be written, in order: each fragment's pixel, and its colour in one form.
-  const bool packs_ = output::packs(state_, frame_.formats);
+  bool packs_ = false;
   std::vector<std::uint32_t> pixels_, packed_;
   std::array<std::vector<float>, 4> colors_;
   std::atomic<bool> handed_back_ = true;
 };
 
-// The stages of a draw behind the geometry: depth is tested and colours are written batch by batch, in their
-// order; what lies between knows no order.
-class DrawStages {
+// The stages behind the geometry: depth is tested and colours are written batch by batch, in their order;
+// what lies between knows no order.
+class LaterStages {
  public:
-  DrawStages(const DrawBindings& bindings, const RenderOptions& options, Frame& frame, DrawWork& work,
-             RenderCounters& counters)
-      : state_(bindings.draw.state),
-        record_(options.record),
-        work_(work),
-        counters_(counters),
-        depth_{frame.depth,
-               {frame.width, frame.height},
-               frame.formats.depth,
-               state_.depth_test,
-               state_.depth_write} {
-    work_.samples_only = record_ == Record::samples;
-    if (record_ != Record::nothing) work_.triangles.reserve(bindings.draw.index_count / 3);
-    if (record_ != Record::nothing && (state_.depth_test || state_.depth_write)) clear_tiles_.emplace(frame);
-  }
+  LaterStages(Record record, RenderCounters& counters) : record_(record), counters_(counters) {}
 
   // One batch at a time.
   void test_depth(Batch& batch) {
@@ -172,7 +190,7 @@ class DrawStages {
  private:
   static void push(Batch& batch, const Band& band, std::span<const raster::Window> windows) {
     batch.pipe.push_band(batch.geometry.piece(band.piece), windows, band.passed,
-                         band.noted ? &batch.work : nullptr);
+                         band.noted ? batch.work : nullptr);
   }
 
   void do_at_once(Batch& batch) {
@@ -184,8 +202,8 @@ class DrawStages {
 
   // Whether the draw's cull mode drops a piece. What decides is the sign on the grid that decides coverage,
   // so a triangle that is dropped and its neighbour that is not never share a pixel.
-  bool culled(const raster::TriangleSetup& piece) const {
-    switch (state_.cull) {
+  static bool culled(const raster::TriangleSetup& piece, CullMode mode) {
+    switch (mode) {
       case CullMode::clockwise:
         return piece.winding > 0;
       case CullMode::counter_clockwise:
@@ -211,38 +229,40 @@ class DrawStages {
       work.pieces = 0;
       for (std::size_t piece = first; piece < first + triangle.pieces; ++piece) {
         const raster::TriangleSetup& setup = batch.geometry.setup(piece);
-        if (culled(setup)) continue;
+        if (culled(setup, batch.state().cull)) continue;
         ++work.pieces;
-        rasterize(piece, setup, work, room, take);
+        rasterize(*batch.draw, piece, setup, work, room, take);
       }
       first += triangle.pieces;
       if (work.pieces == 0 && triangle.pieces != 0) work.outcome = TriangleOutcome::back_facing;
       if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
         work.outcome = TriangleOutcome::no_coverage;
       count(work);
-      if (record_ != Record::nothing) work_.triangles.push_back(work);
+      if (record_ != Record::nothing) batch.draw->work.triangles.push_back(work);
     }
   }
 
   template <typename Room, typename Take>
-  void rasterize(std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work, Room room,
-                 Take take) {
+  void rasterize(DrawInFlight& draw, std::size_t piece, const raster::TriangleSetup& setup,
+                 TriangleWork& work, Room room, Take take) {
     if (!setup.covers) return;
-    const bool sampled = record_ != Record::nothing && work_.is_sampled(work_.triangles.size());
+    const std::size_t triangle = draw.work.triangles.size();
+    const bool sampled = record_ != Record::nothing && draw.work.is_sampled(triangle);
     const bool noted = sampled || record_ == Record::everything;
+    ClearTiles* const clear_tiles = sampled && draw.clear_tiles ? &*draw.clear_tiles : nullptr;
     if (record_ != Record::nothing) work.tile_count += raster::tiles_touched(setup);
     for (int y = setup.top & ~1; y < setup.bottom; y += raster::kWindow) {
       const Windows windows = room();
-      if (sampled && clear_tiles_) clear_tiles_->look(setup, y);
-      const raster::BandCounts counts = raster::rasterize_band(setup, depth_, y, windows);
+      if (clear_tiles != nullptr) clear_tiles->look(setup, y);
+      const raster::BandCounts counts = raster::rasterize_band(setup, draw.depth, y, windows);
       counters_.fragments += counts.covered;
       counters_.fragments_passed += counts.passed;
       work.quad_count += counts.quads;
       work.quads_passed += counts.quads_passed;
-      if (sampled && clear_tiles_)
-        clear_tiles_->note(windows.first(counts.windows), static_cast<std::uint32_t>(work_.triangles.size()),
-                           work_.clear_tiles);
-      if (noted ? counts.windows != 0 : state_.color_write && counts.passed != 0)
+      if (clear_tiles != nullptr)
+        clear_tiles->note(windows.first(counts.windows), static_cast<std::uint32_t>(triangle),
+                          draw.work.clear_tiles);
+      if (noted ? counts.windows != 0 : draw.bindings.draw.state.color_write && counts.passed != 0)
         take(Band{piece, noted, counts.windows, counts.passed});
     }
   }
@@ -259,19 +279,16 @@ class DrawStages {
   }
 
   void append(const Batch& batch) {
+    DrawWork& work = batch.draw->work;
     const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
-    if (record_ == Record::everything) behind(work_.shaded_vertices, batch.geometry.shaded_vertices);
-    if (&batch.work == &work_) return;
-    behind(work_.quads, batch.work.quads);
-    behind(work_.texel_blocks, batch.work.texel_blocks);
+    if (record_ == Record::everything) behind(work.shaded_vertices, batch.geometry.shaded_vertices);
+    if (batch.work == &work) return;
+    behind(work.quads, batch.own_work.quads);
+    behind(work.texel_blocks, batch.own_work.texel_blocks);
   }
 
-  const DrawState& state_;
   Record record_;
-  DrawWork& work_;
   RenderCounters& counters_;
-  raster::DepthTarget depth_;
-  std::optional<ClearTiles> clear_tiles_;  // where depth is recorded
   std::array<raster::Window, raster::kMaxWindows> windows_;
   std::atomic<int> waiting_ = 0;  // batches whose depth is tested when they are written
 };
@@ -282,54 +299,101 @@ std::size_t thread_count() {
   return std::min(arena, global_control::active_value(global_control::max_allowed_parallelism));
 }
 
-void run_on_one_thread(Indices& indices, Batch& batch, DrawStages& stages) {
-  while (indices.fill(batch.geometry)) {
-    batch.geometry.process();
-    stages.test_shade_and_write(batch);
-  }
-}
-
-// Several batches at once, each in one stage.
-void run_on_many_threads(Indices& indices, std::array<std::unique_ptr<Batch>, kBatchesInFlight>& batches,
-                         DrawStages& stages) {
-  using tbb::filter_mode;
-  std::size_t next = 0;
-  const auto fill = [&](tbb::flow_control& control) -> Batch* {
-    Batch* batch = batches[next++ % kBatchesInFlight].get();
-    batch->take_again();
-    if (indices.fill(batch->geometry)) return batch;
-    control.stop();
-    return nullptr;
-  };
-  const auto stage = [](filter_mode mode, auto run) {
-    return tbb::make_filter<Batch*, Batch*>(mode, [run](Batch* batch) {
-      run(*batch);
-      return batch;
-    });
-  };
-  tbb::parallel_pipeline(
-      kBatchesInFlight,
-      tbb::make_filter<void, Batch*>(filter_mode::serial_in_order, fill) &
-          stage(filter_mode::parallel, [](Batch& batch) { batch.geometry.process(); }) &
-          stage(filter_mode::serial_in_order, [&](Batch& batch) { stages.test_depth(batch); }) &
-          stage(filter_mode::parallel, [](Batch& batch) { DrawStages::shade(batch); }) &
-          tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
-            stages.write(*batch);
-            batch->hand_back();
-          }));
-}
-
 }  // namespace
 
-void render_draw(const DrawBindings& bindings, const RenderOptions& options, Indices& indices, Frame& frame,
-                 DrawWork& work, RenderCounters& counters) {
-  indices.begin(bindings);
-  DrawStages stages(bindings, options, frame, work, counters);
-  const bool many = thread_count() > 1;
-  std::array<std::unique_ptr<Batch>, kBatchesInFlight> batches;
-  for (auto& batch : std::span(batches).first(many ? kBatchesInFlight : 1))
-    batch = std::make_unique<Batch>(bindings, options, frame, many ? nullptr : &work);
-  many ? run_on_many_threads(indices, batches, stages) : run_on_one_thread(indices, *batches[0], stages);
+class DrawPipeline::State {
+ public:
+  State(const RenderOptions& options, std::uint32_t width, std::uint32_t height, RenderCounters& counters)
+      : options_(options),
+        width_(width),
+        height_(height),
+        indices_(options.vertex_cache_entries),
+        stages_(options.record, counters) {}
+
+  void run(Frame& frame, const Next& next, const Done& done) {
+    draw_ = nullptr;
+    thread_count() > 1 ? run_on_many_threads(frame, next, done) : run_on_one_thread(frame, next, done);
+  }
+
+ private:
+  Batch& batch(std::size_t i) {
+    if (batches_[i] == nullptr) batches_[i] = std::make_unique<Batch>(options_, width_, height_);
+    return *batches_[i];
+  }
+
+  // False: no draw is left. Each has a batch at least.
+  bool fill(Batch& batch, bool alone, Frame& frame, const Next& next) {
+    if (draw_ == nullptr) {
+      std::optional<DrawTask> task = next();
+      if (!task) return false;
+      draw_ = std::make_shared<DrawInFlight>(std::move(*task), frame, options_.record);
+      indices_.begin(draw_->bindings);
+    }
+    if (batch.draw != draw_) batch.bind(draw_, alone);
+    batch.last = !indices_.fill(batch.geometry);
+    if (batch.last) draw_ = nullptr;
+    return true;
+  }
+
+  void end(Batch& batch, const Done& done) const {
+    if (batch.last && options_.record != Record::nothing) done(std::move(batch.draw->work));
+  }
+
+  void run_on_one_thread(Frame& frame, const Next& next, const Done& done) {
+    Batch& only = batch(0);
+    while (fill(only, true, frame, next)) {
+      only.geometry.process();
+      stages_.test_shade_and_write(only);
+      end(only, done);
+    }
+  }
+
+  // Several batches at once, each in one stage.
+  void run_on_many_threads(Frame& frame, const Next& next, const Done& done) {
+    using tbb::filter_mode;
+    std::size_t filled = 0;
+    const auto fill_next = [&](tbb::flow_control& control) -> Batch* {
+      Batch& next_batch = batch(filled++ % kBatchesInFlight);
+      next_batch.take_again();
+      if (fill(next_batch, false, frame, next)) return &next_batch;
+      next_batch.hand_back();
+      control.stop();
+      return nullptr;
+    };
+    const auto stage = [](filter_mode mode, auto run) {
+      return tbb::make_filter<Batch*, Batch*>(mode, [run](Batch* batch) {
+        run(*batch);
+        return batch;
+      });
+    };
+    tbb::parallel_pipeline(
+        kBatchesInFlight,
+        tbb::make_filter<void, Batch*>(filter_mode::serial_in_order, fill_next) &
+            stage(filter_mode::parallel, [](Batch& batch) { batch.geometry.process(); }) &
+            stage(filter_mode::serial_in_order, [&](Batch& batch) { stages_.test_depth(batch); }) &
+            stage(filter_mode::parallel, [](Batch& batch) { LaterStages::shade(batch); }) &
+            tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
+              stages_.write(*batch);
+              end(*batch, done);
+              batch->hand_back();
+            }));
+  }
+
+  const RenderOptions& options_;
+  std::uint32_t width_, height_;
+  Indices indices_;
+  LaterStages stages_;
+  std::array<std::unique_ptr<Batch>, kBatchesInFlight> batches_;
+  std::shared_ptr<DrawInFlight> draw_;  // of which the next batch is filled; null: of the next one
+};
+
+DrawPipeline::DrawPipeline(const RenderOptions& options, std::uint32_t width, std::uint32_t height,
+                           RenderCounters& counters)
+    : state_(std::make_unique<State>(options, width, height, counters)) {}
+DrawPipeline::~DrawPipeline() = default;
+
+void DrawPipeline::run(Frame& frame, const Next& next, const Done& done) {
+  state_->run(frame, next, done);
 }
 
 }  // namespace splatscope

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <span>
-#include <vector>
 
 #include "model/pixel/pixel_program.h"
 #include "model/primitive/primitive.h"
@@ -24,11 +27,32 @@ struct DrawBindings {
   std::span<const primitive::UsedAttribute> attributes;  // that the pixel program reads
 };
 
-class Indices;  // geometry.h
+// A draw that is to be run, and its record, in which nothing is noted yet.
+struct DrawTask {
+  DrawBindings bindings;
+  DrawWork work;
+};
 
-// Runs one draw on `frame`, adds what it did to `work` (where wanted) and to `counters`. `indices` serves one
-// draw after the other. The same bits from any number of threads.
-void render_draw(const DrawBindings& bindings, const RenderOptions& options, Indices& indices, Frame& frame,
-                 DrawWork& work, RenderCounters& counters);
+// Runs the draws of a frame, and of the next. The same bits from any number of threads.
+class DrawPipeline {
+ public:
+  DrawPipeline(const RenderOptions& options, std::uint32_t width, std::uint32_t height,
+               RenderCounters& counters);
+  ~DrawPipeline();
+
+  // Gives the next draw, or none.
+  using Next = std::function<std::optional<DrawTask>()>;
+  // Takes what a draw did, where it is noted, when all of the draw is done.
+  using Done = std::function<void(DrawWork)>;
+
+  // Draws on `frame`, one draw behind the other. While one is still drawn the next is begun, so none may
+  // sample a frame that another one writes. `next` and `done` are each called in the order of the draws, from
+  // any thread and beside one another.
+  void run(Frame& frame, const Next& next, const Done& done);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace splatscope

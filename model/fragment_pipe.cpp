@@ -17,20 +17,24 @@ constexpr unsigned kQuadRows = raster::kWindow / 2;
 
 }  // namespace
 
-FragmentPipe::FragmentPipe(const DrawBindings& bindings, const raster::VertexAttributes& vertices,
-                           const Frame& frame, Write write)
-    : bindings_(bindings),
-      vertices_(vertices),
-      width_(frame.width),
-      formats_(frame.formats),
-      write_(std::move(write)),
-      samples_((bindings.texture != nullptr || bindings.source != nullptr) && bindings.pixel != nullptr &&
-               (bindings.pixel->texture_stages() & 1u) != 0) {
+FragmentPipe::FragmentPipe(const raster::VertexAttributes& vertices, std::uint32_t width,
+                           const NumberFormats& formats, Write write)
+    : vertices_(vertices), width_(width), formats_(formats), write_(std::move(write)) {
   attributes_[primitive::kDiffuse] = &batch_.v0;
   attributes_[primitive::kSpecular] = &batch_.v1;
+}
+
+void FragmentPipe::bind(const DrawBindings& bindings) {
+  const DrawBindings* const before = std::exchange(bindings_, &bindings);
+  if (before != nullptr && before->pixel == bindings.pixel && before->texture == bindings.texture &&
+      before->source == bindings.source)
+    return;
+  samples_ = (bindings.texture != nullptr || bindings.source != nullptr) && bindings.pixel != nullptr &&
+             (bindings.pixel->texture_stages() & 1u) != 0;
   for (std::size_t stage = 0; primitive::kTexcoord0 + stage < primitive::kAttributes; ++stage)
     attributes_[primitive::kTexcoord0 + stage] = &batch_.t[stage];
   if (samples_) attributes_[primitive::kTexcoord0] = &coordinates_;
+  batch_ = {};  // what no attribute and no texture gives is 0
 }
 
 void FragmentPipe::push_band(const raster::Piece& piece, std::span<const raster::Window> windows,
@@ -54,7 +58,7 @@ void FragmentPipe::push_band(const raster::Piece& piece, std::span<const raster:
 void FragmentPipe::push_rows(const raster::Piece& piece, std::span<const raster::Window> windows,
                              unsigned first_row, unsigned end_row) {
   if (work_ != nullptr) note_quads(windows, first_row, end_row);
-  if (!bindings_.draw.state.color_write) return;
+  if (!bindings_->draw.state.color_write) return;
   const std::size_t first = count_;
   count_ = raster::append_places(windows, first_row, end_row, count_, places_);
   if (count_ == first) return;
@@ -101,33 +105,33 @@ void FragmentPipe::note_blocks(std::span<const std::uint32_t> blocks) {
 // D3DFMT_A8 has no colour: the other components of t0 stay 0.
 void FragmentPipe::sample(std::size_t count) {
   std::array<std::uint32_t, kCapacity> blocks;
-  if (bindings_.source != nullptr) {
+  if (bindings_->source != nullptr) {
     auto& t0 = batch_.t[0];
-    texture::sample_surface(*bindings_.source, coordinates_[0], coordinates_[1], {t0[0], t0[1], t0[2], t0[3]},
-                            std::span(blocks).first(count));
+    texture::sample_surface(*bindings_->source, coordinates_[0], coordinates_[1],
+                            {t0[0], t0[1], t0[2], t0[3]}, std::span(blocks).first(count));
     if (work_ != nullptr) note_blocks(std::span(blocks).first(count));
     return;
   }
   const auto noted = std::span(blocks).first(work_ != nullptr ? count : 0);
   const std::span<float> alpha(batch_.t[0][3], count);
-  texture::sample_nearest(*bindings_.texture, coordinates_[0], coordinates_[1], alpha, noted);
+  texture::sample_nearest(*bindings_->texture, coordinates_[0], coordinates_[1], alpha, noted);
   if (formats_.filter_bits > 0)
-    texture::sample_bilinear(*bindings_.texture, formats_.filter_bits, coordinates_[0], coordinates_[1],
+    texture::sample_bilinear(*bindings_->texture, formats_.filter_bits, coordinates_[0], coordinates_[1],
                              alpha);
   if (work_ != nullptr) note_blocks(noted);
 }
 
 void FragmentPipe::flush() {
   if (count_ == 0) return;
-  raster::interpolate(std::span(pieces_).first(piece_count_), bindings_.attributes, vertices_, places_,
+  raster::interpolate(std::span(pieces_).first(piece_count_), bindings_->attributes, vertices_, places_,
                       count_, width_, pixels_, attributes_);
-  for (const primitive::UsedAttribute& used : bindings_.attributes)
+  for (const primitive::UsedAttribute& used : bindings_->attributes)
     if (used.attribute <= primitive::kSpecular)
       for (float* values : *attributes_[static_cast<std::size_t>(used.attribute)])
         output::receive_colors(values, count_, formats_.color);
   if (samples_) sample(count_);
-  if (bindings_.pixel != nullptr) bindings_.pixel->run({}, batch_, static_cast<int>(count_));
-  const auto& color = bindings_.pixel != nullptr ? batch_.r0 : batch_.v0;
+  if (bindings_->pixel != nullptr) bindings_->pixel->run({}, batch_, static_cast<int>(count_));
+  const auto& color = bindings_->pixel != nullptr ? batch_.r0 : batch_.v0;
   write_({color[0], color[1], color[2], color[3]}, {pixels_.data(), count_});
   count_ = piece_count_ = 0;
 }

@@ -18,10 +18,13 @@ class FragmentPipe {
   using Colors = std::array<const float*, 4>;  // r, g, b, a: an array each
   using Write = std::function<void(const Colors&, std::span<const std::uint32_t> pixels)>;
 
-  // `vertices`: of the corners of all pieces. `frame`: its size and formats. `write` gets at most kCapacity
-  // fragments at a time.
-  FragmentPipe(const DrawBindings& bindings, const raster::VertexAttributes& vertices, const Frame& frame,
+  // `vertices`: of the corners of all pieces. `width`: of the frame, in pixels. `write` gets at most
+  // kCapacity fragments at a time.
+  FragmentPipe(const raster::VertexAttributes& vertices, std::uint32_t width, const NumberFormats& formats,
                Write write);
+
+  // From now on, with nothing in it, it takes fragments of this draw, until it is bound to the next.
+  void bind(const DrawBindings& bindings);
 
   // The windows of one band of a piece, in which `passed` pixels passed; the piece stays where it is until
   // all is flushed. `work`: where its quads are noted, with the texel blocks that each one reads; or null.
@@ -38,7 +41,7 @@ class FragmentPipe {
   void sample(std::size_t count);
   void note_blocks(std::span<const std::uint32_t> blocks);
 
-  const DrawBindings& bindings_;
+  const DrawBindings* bindings_ = nullptr;
   const raster::VertexAttributes& vertices_;
   std::uint32_t width_;
   const NumberFormats& formats_;

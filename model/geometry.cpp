@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "model/output/output.h"
 #include "model/vertex/vertex_fetch.h"
@@ -19,20 +20,26 @@ constexpr std::uint32_t kManyNumbers = 1u << 31;  // more than that are not give
 
 }  // namespace
 
-GeometryBatch::GeometryBatch(const DrawBindings& bindings, const RenderOptions& options,
-                             const primitive::Viewport& viewport)
-    : bindings_(bindings),
-      options_(options),
-      viewport_(viewport),
-      program_(bindings.vertex, bindings.draw.constants) {
-  const unsigned read = bindings.vertex.inputs_read();
-  vertex::fill_defaults(program_.input(), read);
-  vertex::fill_defaults(program_.grouped_input(), read);
-  std::ranges::copy_if(bindings.draw.attributes, std::back_inserter(inputs_),
-                       [&](const VertexAttribute& a) { return (read >> a.input & 1u) != 0; });
+GeometryBatch::GeometryBatch(const RenderOptions& options, const primitive::Viewport& viewport)
+    : options_(options), viewport_(viewport) {
   for (auto* values : {&projected_.x, &projected_.y, &projected_.z, &projected_.inverse_w})
     values->resize(kVertices);
   projected_.outside.resize(kVertices);
+}
+
+void GeometryBatch::bind(const DrawBindings& bindings) {
+  const DrawBindings* const before = std::exchange(bindings_, &bindings);
+  if (before != nullptr && &before->vertex == &bindings.vertex &&
+      before->draw.attributes == bindings.draw.attributes &&
+      before->draw.constants == bindings.draw.constants)
+    return;
+  program_.emplace(bindings.vertex, bindings.draw.constants);
+  const unsigned read = bindings.vertex.inputs_read();
+  vertex::fill_defaults(program_->input(), read);
+  vertex::fill_defaults(program_->grouped_input(), read);
+  inputs_.clear();
+  std::ranges::copy_if(bindings.draw.attributes, std::back_inserter(inputs_),
+                       [&](const VertexAttribute& a) { return (read >> a.input & 1u) != 0; });
 }
 
 void GeometryBatch::clear() {
@@ -48,7 +55,7 @@ void GeometryBatch::clear() {
 // function(values of the vertices, attribute, component) for those that the draw reads.
 template <typename Function>
 void GeometryBatch::each_attribute(Function function) {
-  for (const primitive::UsedAttribute& used : bindings_.attributes) {
+  for (const primitive::UsedAttribute& used : bindings_->attributes) {
     const auto attribute = static_cast<std::size_t>(used.attribute);
     for (std::size_t c = 0; c < static_cast<std::size_t>(used.components); ++c)
       function(attributes_[attribute][c], attribute, c);
@@ -72,19 +79,20 @@ void GeometryBatch::process() {
 
 vertex::NextVertices GeometryBatch::next_vertices(std::size_t first) const {
   const std::size_t count = std::min<std::size_t>(vertices.size() - first, vertex::kBatch);
-  return {bindings_.vertices.bytes, bindings_.draw.vertex_stride, std::span(vertices).subspan(first, count)};
+  return {bindings_->vertices.bytes, bindings_->draw.vertex_stride,
+          std::span(vertices).subspan(first, count)};
 }
 
 void GeometryBatch::shade() {
   static_assert(kVertices % vertex::kBatch == 0 && vertex::kBatch % primitive::kProjectionLanes == 0);
-  const vertex::OutputBatch& out = program_.output();
+  const vertex::OutputBatch& out = program_->output();
   const auto& position = out.o[vertex::oPos];
   for (std::size_t first = 0; first < vertices.size(); first += vertex::kBatch) {
     const std::size_t count = std::min<std::size_t>(vertices.size() - first, vertex::kBatch);
     const unsigned grouped = vertex::fetch_grouped(
-        inputs_, bindings_.vertices.bytes, bindings_.draw.vertex_stride,
-        std::span(vertices).subspan(first, count), program_.input(), program_.grouped_input());
-    program_.run(static_cast<int>(count), grouped, next_vertices(first + count));
+        inputs_, bindings_->vertices.bytes, bindings_->draw.vertex_stride,
+        std::span(vertices).subspan(first, count), program_->input(), program_->grouped_input());
+    program_->run(static_cast<int>(count), grouped, next_vertices(first + count));
     primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
                        first);
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(position[c], count, positions_[c].data() + first);
@@ -149,7 +157,7 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
     });
   }
   const primitive::Assembled assembled =
-      primitive::assemble(corners, viewport_, bindings_.attributes, clipped_);
+      primitive::assemble(corners, viewport_, bindings_->attributes, clipped_);
   triangle.outcome = assembled.outcome;
   triangle.pieces = static_cast<std::uint8_t>(assembled.pieces);
   static_assert(kVertices + kTriangles * primitive::kMaxPieces * kCorners < 1u << 16);
@@ -180,7 +188,7 @@ void GeometryBatch::set_up() {
   if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
   const int bits = options_.formats.subpixel_bits;
   const auto out = std::span(setups_).subspan(piece_corners_.size() - waiting_, waiting_);
-  raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits), !bindings_.attributes.empty(),
+  raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits), !bindings_->attributes.empty(),
                  out);
   waiting_ = 0;
 }
@@ -301,7 +309,7 @@ bool Indices::fill(GeometryBatch& batch) {
     position_ += kCorners;
   }
   batch.next_vertices(0).prefetch(0, vertex::kBatch);
-  return !batch.triangles.empty();
+  return position_ + kCorners <= draw.index_count;
 }
 
 }  // namespace splatscope

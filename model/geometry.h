@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,11 @@ class GeometryBatch {
  public:
   static constexpr std::size_t kVertices = 1024, kTriangles = 2560;  // at most
 
-  GeometryBatch(const DrawBindings& bindings, const RenderOptions& options,
-                const primitive::Viewport& viewport);
+  GeometryBatch(const RenderOptions& options, const primitive::Viewport& viewport);
+
+  // From now on it takes triangles of this draw, until it is bound to the next. What differs from the draw
+  // before is made ready anew.
+  void bind(const DrawBindings& bindings);
 
   // ---- filled by Indices
   std::vector<std::uint32_t> vertices;         // vertex numbers, base_vertex added
@@ -60,11 +64,11 @@ class GeometryBatch {
   void add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c);
   void set_up();
 
-  const DrawBindings& bindings_;
+  const DrawBindings* bindings_ = nullptr;
   const RenderOptions& options_;
   primitive::Viewport viewport_;
   std::vector<VertexAttribute> inputs_;  // that the program reads
-  vertex::VertexProgram::Bound program_;
+  std::optional<vertex::VertexProgram::Bound> program_;
   std::array<std::array<float, kVertices>, 4> positions_;  // x y z w
   raster::VertexAttributes attributes_;  // of the vertices, and behind them of clipped corners
   std::uint32_t clipped_corners_ = 0;
@@ -85,7 +89,7 @@ class Indices {
   explicit Indices(int cache_entries);
   // Begins a draw, with the FIFO empty.
   void begin(const DrawBindings& bindings);
-  // False: no triangle is left.
+  // True: triangles are left for the next batch.
   bool fill(GeometryBatch& batch);
 
  private:

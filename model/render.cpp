@@ -7,7 +7,6 @@
 
 #include "model/draw.h"
 #include "model/error.h"
-#include "model/geometry.h"
 #include "model/isa/program.h"
 #include "model/output/output.h"
 #include "model/stop.h"
@@ -86,52 +85,74 @@ class Programs {
 // Does commands on the resources of a trace, one after the other.
 class Renderer {
  public:
+  // `on_work` takes the work of each draw; `progress` is told how many commands are begun.
   Renderer(const Trace& trace, std::span<const Command> commands, const RenderOptions& options,
-           Rendered& rendered)
+           Rendered& rendered, std::function<void(DrawWork)> on_work,
+           std::function<void(std::size_t)> progress)
       : trace_(trace),
         commands_(commands),
-        options_(options),
         rendered_(rendered),
+        on_work_(std::move(on_work)),
+        progress_(std::move(progress)),
         programs_(trace, options.formats),
-        indices_(options.vertex_cache_entries) {
+        pipeline_(options, trace.width, trace.height, rendered.counters) {
     for (std::uint32_t i = 0; i < trace.surfaces; ++i)
       surfaces_.emplace_back(trace.width, trace.height, options.formats);
     output::clear(Clear{}, rendered.frame);
   }
 
-  // Before the commands [from, to) of a frame.
-  void begin_frame(std::size_t from, std::size_t to) {
+  // The commands [from, to) of a frame.
+  void run_frame(std::size_t from, std::size_t to) {
     std::uint64_t triangles = 0;
     for (const Command& command : commands_.subspan(from, to - from))
       if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
     sampled_runs_apart_ = sampled_runs_apart(triangles);
-  }
-
-  void run(std::size_t command) {
-    stop_if_asked();
-    std::visit([&](const auto& body) { run(command, body); }, commands_[command]);
+    next_ = from;
+    while (next_ < to) {
+      if (std::holds_alternative<Draw>(commands_[next_])) {
+        run_draws(to);
+      } else {
+        begin();
+        std::visit([&](const auto& body) { run(body); }, commands_[next_]);
+        ++next_;
+      }
+    }
   }
 
  private:
-  void run(std::size_t, const Clear& clear) { output::clear(clear, rendered_.frame); }
-  void run(std::size_t, const NormalizeOnHost&) { output::normalize(rendered_.frame); }
-  void run(std::size_t, const Present&) {}
-  void run(std::size_t command, const Draw& draw) {
+  void begin() {
+    stop_if_asked();
+    progress_(next_);
+  }
+  void run(const Clear& clear) { output::clear(clear, rendered_.frame); }
+  void run(const NormalizeOnHost&) { output::normalize(rendered_.frame); }
+  void run(const Present&) {}
+  void run(const Draw&) {}  // run_draws()
+
+  // Those that follow one another on one target: what they sample is another surface.
+  void run_draws(std::size_t to) {
+    const std::uint32_t number = std::get<Draw>(commands_[next_]).target;
+    Frame& target = number == 0 ? rendered_.frame : surfaces_[number - 1];
+    const auto next_draw_on_it = [&]() -> std::optional<DrawTask> {
+      const Draw* draw = next_ < to ? std::get_if<Draw>(&commands_[next_]) : nullptr;
+      if (draw == nullptr || draw->target != number) return std::nullopt;
+      return next_draw(*draw);
+    };
+    pipeline_.run(target, next_draw_on_it, on_work_);
+  }
+
+  DrawTask next_draw(const Draw& draw) {
+    begin();
     const LoadedPixelProgram* pixel = draw.pixel_program ? &programs_.pixel(*draw.pixel_program) : nullptr;
-    const DrawBindings bindings{draw,
-                                trace_.buffers[draw.vertex_buffer],
-                                trace_.buffers[draw.index_buffer],
-                                draw.texture ? &trace_.textures[*draw.texture] : nullptr,
-                                draw.source ? &surfaces_[*draw.source - 1] : nullptr,
-                                programs_.vertex(draw.vertex_program),
-                                pixel ? &pixel->program : nullptr,
-                                attributes_read(draw, pixel)};
-    DrawWork work;
-    work.command = static_cast<std::uint32_t>(command);
-    work.sampled_runs_apart = sampled_runs_apart_;
-    Frame& target = draw.target == 0 ? rendered_.frame : surfaces_[draw.target - 1];
-    render_draw(bindings, options_, indices_, target, work, rendered_.counters);
-    if (options_.record != Record::nothing) rendered_.work.push_back(std::move(work));
+    DrawTask task{
+        {draw, trace_.buffers[draw.vertex_buffer], trace_.buffers[draw.index_buffer],
+         draw.texture ? &trace_.textures[*draw.texture] : nullptr,
+         draw.source ? &surfaces_[*draw.source - 1] : nullptr, programs_.vertex(draw.vertex_program),
+         pixel ? &pixel->program : nullptr, attributes_read(draw, pixel)},
+        {}};
+    task.work.command = static_cast<std::uint32_t>(next_++);
+    task.work.sampled_runs_apart = sampled_runs_apart_;
+    return task;
   }
 
   static std::span<const primitive::UsedAttribute> attributes_read(const Draw& draw,
@@ -142,11 +163,13 @@ class Renderer {
 
   const Trace& trace_;
   std::span<const Command> commands_;
-  const RenderOptions& options_;
   Rendered& rendered_;
+  std::function<void(DrawWork)> on_work_;
+  std::function<void(std::size_t)> progress_;
   std::vector<Frame> surfaces_;  // off-screen
   Programs programs_;
-  Indices indices_;
+  DrawPipeline pipeline_;
+  std::size_t next_ = 0;  // command
   std::uint32_t sampled_runs_apart_ = 1;
 };
 
@@ -156,17 +179,14 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
                 const std::function<void(const Frame&)>& on_frame,
                 const std::function<void(DrawWork)>& on_work) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
-  Renderer renderer(trace, trace.commands, options, rendered);
+  const auto keep = [&](DrawWork work) { rendered.work.push_back(std::move(work)); };
+  const auto tell = [&](std::size_t command) {
+    if (progress) progress(static_cast<double>(command) / static_cast<double>(trace.commands.size()));
+  };
+  Renderer renderer(trace, trace.commands, options, rendered, on_work ? on_work : keep, tell);
   std::size_t command = 0;
   for (const std::size_t end : frame_ends(trace)) {
-    renderer.begin_frame(command, end);
-    for (; command < end; ++command) {
-      if (progress) progress(static_cast<double>(command) / static_cast<double>(trace.commands.size()));
-      renderer.run(command);
-      if (!on_work) continue;
-      for (DrawWork& work : rendered.work) on_work(std::move(work));
-      rendered.work.clear();
-    }
+    renderer.run_frame(std::exchange(command, end), end);
     if (on_frame) on_frame(rendered.frame);
   }
   return rendered;
@@ -174,8 +194,9 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
 
 Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
-  Renderer renderer(trace, commands, options, rendered);
-  for (std::size_t command = 0; command < commands.size(); ++command) renderer.run(command);
+  Renderer renderer(
+      trace, commands, options, rendered, [](const DrawWork&) {}, [](std::size_t) {});
+  renderer.run_frame(0, commands.size());
   return std::move(rendered.frame);
 }
 

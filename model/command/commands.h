@@ -24,6 +24,8 @@ struct VertexAttribute {
   std::uint8_t input = 0;  // v0..v15
   VertexFormat format = VertexFormat::float3;
   std::uint16_t offset = 0;  // bytes from the start of a vertex
+
+  bool operator==(const VertexAttribute&) const = default;
 };
 
 // Bytes of vertices or of 16-bit indices.
