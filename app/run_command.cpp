@@ -9,7 +9,6 @@
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "model/error.h"
-#include "studies/image_io.h"
 #include "studies/own_program.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
@@ -135,9 +134,9 @@ void run(const Options& options, bool quiet) {
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::reference_of(opened, *map);
   ProgressBar recording("recording", quiet);
-  auto library = std::async(std::launch::async, studies::load_image_library);  // an error: when it is used
+  auto libraries = std::async(std::launch::async, studies::load_libraries);  // an error: when they are used
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
-  library.wait();
+  libraries.wait();
   recording.clear();
   studies::replace_programs(input.trace, options.programs);
   studies::RunObservers observers(options.observe, input.trace);

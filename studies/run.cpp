@@ -1,6 +1,7 @@
 #include "studies/run.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <exception>
 #include <future>
@@ -8,6 +9,7 @@
 #include "model/error.h"
 #include "sim/fidelity/sampled.h"
 #include "sim/fidelity/throughput.h"
+#include "studies/image_io.h"
 #include "studies/measure.h"
 #include "studies/reference_comparison.h"
 #include "studies/work_queue.h"
@@ -157,6 +159,11 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
 }
 
 }  // namespace
+
+void load_libraries() {
+  tbb::parallel_for(0, 2, [](int) {});
+  load_image_library();
+}
 
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
                    const OnFrame& on_frame, const TimingOptions& timing) {

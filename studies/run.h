@@ -82,6 +82,10 @@ struct TimingOptions {
 sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                        Fidelity fidelity, const TimingOptions& options = {}, const Progress& progress = {});
 
+// Does now, on any thread, what else the first frame and its picture wait for: oneTBB's threads, and a fifth
+// of a second of the loader for OpenImageIO. Throws std::runtime_error where that cannot be loaded.
+void load_libraries();
+
 // Where every event is simulated (cycle, referee), the function of the next draws runs in a thread beside the
 // time of this one, and calls `on_frame`. The records of work are dropped once they are simulated.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
