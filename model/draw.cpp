@@ -5,10 +5,13 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "model/clear_tiles.h"
 #include "model/fragment_pipe.h"
@@ -19,7 +22,8 @@
 namespace splatscope {
 namespace {
 
-constexpr std::size_t kBatchesInFlight = 4;
+// So many for each thread: with more the caches hold less of them, with fewer threads wait for one another.
+constexpr std::size_t kBatchesAThread = 2;
 // Pixels of the rectangles of a batch's triangles: with more its fragments are not kept until it is their
 // turn to be written.
 constexpr std::int64_t kMostPixelsKept = 1 << 18;
@@ -312,15 +316,12 @@ class DrawPipeline::State {
 
   void run(Frame& frame, const Next& next, const Done& done) {
     draw_ = nullptr;
-    thread_count() > 1 ? run_on_many_threads(frame, next, done) : run_on_one_thread(frame, next, done);
+    const std::size_t threads = thread_count(), batches = threads > 1 ? kBatchesAThread * threads : 1;
+    while (batches_.size() < batches) batches_.push_back(std::make_unique<Batch>(options_, width_, height_));
+    threads > 1 ? run_in_flight(batches, frame, next, done) : run_one_by_one(frame, next, done);
   }
 
  private:
-  Batch& batch(std::size_t i) {
-    if (batches_[i] == nullptr) batches_[i] = std::make_unique<Batch>(options_, width_, height_);
-    return *batches_[i];
-  }
-
   // False: no draw is left. Each has a batch at least.
   bool fill(Batch& batch, bool alone, Frame& frame, const Next& next) {
     if (draw_ == nullptr) {
@@ -339,8 +340,8 @@ class DrawPipeline::State {
     if (batch.last && options_.record != Record::nothing) done(std::move(batch.draw->work));
   }
 
-  void run_on_one_thread(Frame& frame, const Next& next, const Done& done) {
-    Batch& only = batch(0);
+  void run_one_by_one(Frame& frame, const Next& next, const Done& done) {
+    Batch& only = *batches_[0];
     while (fill(only, true, frame, next)) {
       only.geometry.process();
       stages_.test_shade_and_write(only);
@@ -349,11 +350,11 @@ class DrawPipeline::State {
   }
 
   // Several batches at once, each in one stage.
-  void run_on_many_threads(Frame& frame, const Next& next, const Done& done) {
+  void run_in_flight(std::size_t batches, Frame& frame, const Next& next, const Done& done) {
     using tbb::filter_mode;
     std::size_t filled = 0;
     const auto fill_next = [&](tbb::flow_control& control) -> Batch* {
-      Batch& next_batch = batch(filled++ % kBatchesInFlight);
+      Batch& next_batch = *batches_[filled++ % batches];
       next_batch.take_again();
       if (fill(next_batch, false, frame, next)) return &next_batch;
       next_batch.hand_back();
@@ -367,23 +368,22 @@ class DrawPipeline::State {
       });
     };
     tbb::parallel_pipeline(
-        kBatchesInFlight,
-        tbb::make_filter<void, Batch*>(filter_mode::serial_in_order, fill_next) &
-            stage(filter_mode::parallel, [](Batch& batch) { batch.geometry.process(); }) &
-            stage(filter_mode::serial_in_order, [&](Batch& batch) { stages_.test_depth(batch); }) &
-            stage(filter_mode::parallel, [](Batch& batch) { LaterStages::shade(batch); }) &
-            tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
-              stages_.write(*batch);
-              end(*batch, done);
-              batch->hand_back();
-            }));
+        batches, tbb::make_filter<void, Batch*>(filter_mode::serial_in_order, fill_next) &
+                     stage(filter_mode::parallel, [](Batch& batch) { batch.geometry.process(); }) &
+                     stage(filter_mode::serial_in_order, [&](Batch& batch) { stages_.test_depth(batch); }) &
+                     stage(filter_mode::parallel, [](Batch& batch) { LaterStages::shade(batch); }) &
+                     tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
+                       stages_.write(*batch);
+                       end(*batch, done);
+                       batch->hand_back();
+                     }));
   }
 
   const RenderOptions& options_;
   std::uint32_t width_, height_;
   Indices indices_;
   LaterStages stages_;
-  std::array<std::unique_ptr<Batch>, kBatchesInFlight> batches_;
+  std::vector<std::unique_ptr<Batch>> batches_;
   std::shared_ptr<DrawInFlight> draw_;  // of which the next batch is filled; null: of the next one
 };
 
