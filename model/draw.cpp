@@ -52,7 +52,7 @@ struct DrawInFlight {
     if (record == Record::nothing) return;
     work.samples_only = record == Record::samples;
     work.triangles.reserve(bindings.draw.index_count / 3);
-    if (bindings.draw.state.depth_test || bindings.draw.state.depth_write) clear_tiles.emplace(target);
+    if (uses_depth(bindings.draw)) clear_tiles.emplace(target);
   }
 
   DrawBindings bindings;

@@ -52,7 +52,7 @@ void HeatMaps::add(const DrawWork& work) {
       count(overdraw_, x, y, 1);
       if ((quad.passed >> bit & 1) == 0) count(depth_fails_, x, y, 1);
     }
-    if (sim::uses_texture(draw)) count(texel_fetches_, quad.x, quad.y, quad.texel_block_count);
+    if (uses_texture(draw)) count(texel_fetches_, quad.x, quad.y, quad.texel_block_count);
   }
 }
 

@@ -84,6 +84,14 @@ struct Draw {
   DrawState state;
 };
 
+// What a draw has to do with: it goes past the units of the rest, so that leaving them out changes nothing.
+inline bool uses_depth(const Draw& draw) {
+  return draw.state.depth_test || draw.state.depth_write;
+}
+inline bool uses_texture(const Draw& draw) {
+  return draw.state.color_write && (draw.texture.has_value() || draw.source.has_value());
+}
+
 // Of the frame; a draw clears an off-screen surface.
 struct Clear {
   Vec4 color{};        // r g b a

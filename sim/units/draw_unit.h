@@ -33,14 +33,6 @@ struct DrawJob {
   std::span<const std::uint32_t> marks;  // triangles, in order, at which primitive assembly tells the time
 };
 
-// The units that a draw goes through: it goes past the others, so that leaving them out changes nothing.
-inline bool uses_depth(const Draw& draw) {
-  return draw.state.depth_test || draw.state.depth_write;
-}
-inline bool uses_texture(const Draw& draw) {
-  return draw.state.color_write && (draw.texture.has_value() || draw.source.has_value());
-}
-
 // Whether a quad goes on to texture, pixel unit and blending.
 inline bool is_colored(const DrawJob& job, const QuadWork& quad) {
   return job.draw->state.color_write && quad.passed != 0;
