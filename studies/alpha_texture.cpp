@@ -202,7 +202,7 @@ void study_alpha_texture(Findings& findings, const Progress& progress) {
     }
     sizes += fmt::format("c = {}: Eq. 16 gives {}, the least without a value left out is {}\n", cutoff,
                          kernels::optimal_length(cutoff), least_length(cutoff));
-    if (progress) progress(static_cast<double>(all.size()) / std::size(kCutoffs));
+    tell(progress, all.size(), std::size(kCutoffs));
   }
   findings.say(sizes + text_of(all));
   findings.plot("alpha-texture-size", size_plot());

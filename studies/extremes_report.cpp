@@ -102,8 +102,7 @@ void study_extremes(Findings& findings, const Progress& progress) {
       rows.push_back(row);
     }
     findings.plot(fmt::format("extremes-{}", &sweep - sweeps.data()), plot);
-    if (progress)
-      progress(0.7 * static_cast<double>(&sweep - sweeps.data() + 1) / static_cast<double>(sweeps.size()));
+    tell(part(progress, 0, 0.7), static_cast<std::size_t>(&sweep - sweeps.data()) + 1, sweeps.size());
   }
   findings.say(text_of(rows));
   findings.say(

@@ -92,7 +92,7 @@ void add_saving(const Trace& trace, const Machine& machine, sim::Scheduler sched
 
 void study_saving(Findings& findings, const Progress& progress) {
   Saving cycle, referee;
-  double done = 0;
+  std::size_t done = 0;
   for (const std::string_view ready : kTable1) {
     for (const std::string_view name : kMachines) {
       const Machine machine = machine::load(name);
@@ -101,7 +101,7 @@ void study_saving(Findings& findings, const Progress& progress) {
       // One frame is enough: it takes a minute.
       if (ready == kTable1[2] && name == kMachines[0])
         add_saving(trace, machine, sim::Scheduler::referee, kFidelityRepetitions, referee);
-      if (progress) progress(++done / (std::size(kTable1) * std::size(kMachines)));
+      tell(progress, ++done, std::size(kTable1) * std::size(kMachines));
     }
   }
   findings.say(
@@ -196,9 +196,7 @@ std::vector<FidelityRow> fidelity_rows(const FidelityFrame& frame, int repetitio
       const int runs = fidelity == Fidelity::referee ? 1 : repetitions;
       rows.push_back(row_of(frame, machine_name, fidelity, cost_of(trace, machine, fidelity, runs)));
       if (fidelity == Fidelity::sampled) add_seeds(trace, machine, rows.back());
-      if (progress)
-        progress(static_cast<double>(rows.size()) /
-                 static_cast<double>(std::size(kMachines) * std::size(kFidelityLadder)));
+      tell(progress, rows.size(), std::size(kMachines) * std::size(kFidelityLadder));
     }
     const FidelityRow referee = rows.back();
     for (std::size_t i = first; i < rows.size(); ++i) compare_with(referee, rows[i]);

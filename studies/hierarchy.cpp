@@ -98,7 +98,7 @@ void add_table(Findings& findings, std::string_view caption, const Cells& heads,
 void study_culling(Findings& findings, const Machine& machine, const Progress& progress) {
   std::vector<Cells> cells;
   Json results = Json::array();
-  constexpr double kRows = 2 * std::size(kModels) + std::size(kBlockSurfels);
+  constexpr std::size_t kRows = 2 * std::size(kModels) + std::size(kBlockSurfels);
   const auto add = [&](const std::string& name, const traces::Scene& scene) {
     const CullingRow row = culling_row(scene, machine);
     cells.push_back({name, fmt::format("{}", row.surfels), percent(row.could_go.outside, row.surfels),
@@ -116,7 +116,7 @@ void study_culling(Findings& findings, const Machine& machine, const Progress& p
                        {"draws_of_a_pass", row.draws},
                        {"fps_culling_off", row.fps_all},
                        {"fps", row.fps}});
-    if (progress) progress(static_cast<double>(cells.size()) / kRows);
+    tell(progress, cells.size(), kRows);
   };
   traces::Scene first;
   for (const std::string_view model : kModels) {
@@ -154,7 +154,7 @@ void study_levels(Findings& findings, const Machine& machine, const Progress& pr
                        {"fps_finest", row.fps_finest},
                        {"fps", row.fps},
                        {"psnr_decibels", row.psnr}});
-    if (progress) progress(static_cast<double>(cells.size()) / std::size(kDistances));
+    tell(progress, cells.size(), std::size(kDistances));
   }
   add_table(findings,
             "The salamander from further away, with a surfel a pixel where a coarser level has as many: "

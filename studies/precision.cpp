@@ -180,8 +180,7 @@ std::vector<SwitchRow> switch_rows(std::span<const Switch> switches, std::span<c
     }
     rows[i] = std::move(row);
     const std::lock_guard lock(progress_lock);
-    ++done;
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(switches.size()));
+    tell(progress, ++done, switches.size());
   });
   return rows;
 }

@@ -105,7 +105,7 @@ std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const
       row.timing = *run.timing;
     }
     rows.push_back(std::move(row));
-    if (progress) progress(static_cast<double>(rows.size()) / static_cast<double>(names.size()));
+    tell(progress, rows.size(), names.size());
   }
   return rows;
 }

@@ -95,9 +95,7 @@ std::vector<SoftwareRow> software_rows(traces::Scene scene, std::span<const int>
   const auto points = static_cast<double>(scene.surfels.size());
   const auto add = [&](std::string_view renderer, double seconds) {
     rows.push_back({renderer, scene.frame.width, seconds, points / seconds});
-    if (progress)
-      progress(static_cast<double>(rows.size()) /
-               static_cast<double>(std::size(kRenderers) * resolutions.size()));
+    tell(progress, rows.size(), std::size(kRenderers) * resolutions.size());
   };
   const double offset = scene.splatting.depth_offset, cutoff = scene.splatting.cutoff;
   const std::vector<kernels::Surfel> surfels = reference_surfels(scene);

@@ -16,6 +16,10 @@ Progress part(const Progress& progress, double from, double to) {
   return [=](double fraction) { progress(from + fraction * (to - from)); };
 }
 
+void tell(const Progress& progress, std::size_t done, std::size_t all) {
+  if (progress) progress(static_cast<double>(done) / static_cast<double>(all));
+}
+
 Findings::Findings(std::filesystem::path folder, std::string_view title, std::string_view lead)
     : folder_(std::move(folder)), report_(title, lead), results_(nlohmann::ordered_json::object()) {}
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -20,6 +21,9 @@ using Progress = std::function<void(double)>;  // told the fraction done, from 0
 
 // Part of a longer progress, from one fraction to another.
 Progress part(const Progress& progress, double from, double to);
+
+// Of `all` steps alike, `done` are done. Nothing where nobody listens.
+void tell(const Progress& progress, std::size_t done, std::size_t all);
 
 // What studies find: text for the terminal, figures for scripts (results.json), tables and pictures for
 // people (report.html, PNG and EXR files), all in one folder.

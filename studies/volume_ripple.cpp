@@ -38,7 +38,7 @@ void study_volume_ripple(Findings& findings, const Progress& progress) {
       "volume-ripple  largest deviation of a layer's opacity, by pixels between voxels\n  cutoff";
   for (const double pitch : kPitches) text += fmt::format(" {:>7.2f}px", pitch);
   auto json = nlohmann::ordered_json::array();
-  double done = 0;
+  std::size_t done = 0;
   for (const double cutoff : kCutoffs) {
     text += fmt::format("\n  {:>6}", cutoff);
     for (const double pitch : kPitches) {
@@ -46,7 +46,7 @@ void study_volume_ripple(Findings& findings, const Progress& progress) {
       text += fmt::format(" {:>8.2f}%", 100 * ripple);
       json.push_back({{"cutoff", cutoff}, {"pitch", pitch}, {"ripple", ripple}});
     }
-    if (progress) progress(++done / static_cast<double>(std::size(kCutoffs)));
+    tell(progress, ++done, std::size(kCutoffs));
   }
   findings.say(text + "\n");
   findings.result("volume_ripple", std::move(json));

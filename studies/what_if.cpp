@@ -197,7 +197,7 @@ std::vector<WhatIfRow> what_if_rows(const traces::Scene& scene, std::string_view
       row.cells.push_back(cell_of(drawings.of(one, algorithm), one, machine_with(machine, one)));
     }
     rows.push_back(std::move(row));
-    if (progress) progress(static_cast<double>(rows.size()) / static_cast<double>(hardware.size()));
+    tell(progress, rows.size(), hardware.size());
   }
   return rows;
 }

@@ -217,7 +217,7 @@ std::vector<GammaRow> sweep_gamma(const traces::Scene& scene, std::span<const do
     rows.push_back({gamma, saturated_share(run_frame(sums, machine, Fidelity::functional).rendered.frame),
                     clamped_share(captured, gamma),
                     psnr(draw_weighted(changed, captured, machine), reference)});
-    if (progress) progress(static_cast<double>(rows.size()) / static_cast<double>(gammas.size()));
+    tell(progress, rows.size(), gammas.size());
   }
   return rows;
 }

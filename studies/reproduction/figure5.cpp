@@ -85,7 +85,7 @@ std::vector<OffsetRow> sweep_offset(const traces::Scene& scene, std::span<const 
     rows.push_back({factor, run_with_offset(scene, traces::DepthOffsetScheme::viewing_ray, z_t, weights,
                                             machine, surface)
                                 .counts});
-    if (progress) progress(static_cast<double>(rows.size()) / static_cast<double>(spacings.size()));
+    tell(progress, rows.size(), spacings.size());
   }
   return rows;
 }

@@ -127,11 +127,9 @@ std::vector<Table1Row> table1_rows(const Progress& progress) {
       scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
   std::map<std::string, traces::CapturedWeights, std::less<>>
       weights;  // by machine: two algorithms share them
+  constexpr double kFrames = std::size(kPublished);
   double done = 0;
   for (const Published& published : kPublished) {
-    const auto step = [&](double fraction) {
-      if (progress) progress((done + fraction) / std::size(kPublished));
-    };
     const Machine machine = machine::load(published.machine);
     const traces::Scene scene = traces::load_scene(fmt::format("checkerboard-{}", published.algorithm));
     const bool per_pixel = scene.splatting.algorithm == traces::Algorithm::ewa_per_pixel;
@@ -141,7 +139,8 @@ std::vector<Table1Row> table1_rows(const Progress& progress) {
     }
     const Trace trace = per_pixel ? traces::record(scene, machine.numbers).trace
                                   : traces::record(scene, weights.find(published.machine)->second).trace;
-    const FrameRun run = run_frame(trace, machine, Fidelity::cycle, step);
+    const FrameRun run =
+        run_frame(trace, machine, Fidelity::cycle, part(progress, done / kFrames, (done + 1) / kFrames));
 
     Table1Row row;
     row.algorithm = published.algorithm;

@@ -207,7 +207,7 @@ VolumeRow volume_row(const VolumeModel& model, Fidelity fidelity, const Progress
     row.frames.push_back(frame_of(machine, *run.timing));
     row.psnr_8_bits = reference.psnr_of(run.rendered.frame);
     row.machine = picture_of(run.rendered.frame);
-    if (progress) progress(0.4 + 0.3 * static_cast<double>(row.frames.size()));
+    tell(part(progress, 0.4, 1), row.frames.size(), std::size(kMachines));
   }
   return row;
 }
@@ -230,7 +230,7 @@ std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity, 
       row.psnr = reference.psnr_of(run.rendered.frame);
     }
     rows.push_back(std::move(row));
-    if (progress) progress(static_cast<double>(rows.size()) / std::size(kFormats));
+    tell(progress, rows.size(), std::size(kFormats));
   }
   return rows;
 }
@@ -250,7 +250,7 @@ std::vector<StepRow> step_rows(const VolumeModel& model, const Progress& progres
     if (frame) options.formats.frame = FrameFormat::float32;
     rows.push_back({std::move(wide), reference.psnr_of(render(traces[0], options).frame),
                     reference.psnr_of(render(traces[1], options).frame)});
-    if (progress) progress(static_cast<double>(rows.size()) / 6);
+    tell(progress, rows.size(), 6);
   };
   add("nothing", false, false, false);
   add("interpolated colours, what is blended", true, false, false);

@@ -114,7 +114,7 @@ std::vector<SurfaceRow> surface_rows(double share, int repeats, const Progress& 
       row.single_seconds = median_seconds(
           repeats, [&] { fast.draw(model.view, {.depth_offset = model.spacing, .cull_back_faces = true}); });
       rows.push_back(std::move(row));
-      if (progress) progress(static_cast<double>(rows.size()) / (std::size(kPublished) * std::size(kSizes)));
+      tell(progress, rows.size(), std::size(kPublished) * std::size(kSizes));
     }
   }
   return rows;
@@ -148,7 +148,7 @@ void reproduce_zwicker_figure17(Findings& findings, const Progress& progress) {
                     {"founded", outcomes.founded},
                     {"replaced", outcomes.replaced},
                     {"dropped", outcomes.dropped}});
-    if (progress) progress(static_cast<double>(pictures.size()) / std::size(kPublished));
+    tell(progress, pictures.size(), std::size(kPublished));
   }
   findings.report().heading("Zwicker 2002, Fig. 17: EWA surface splatting");
   findings.pictures(pictures);

@@ -110,7 +110,7 @@ void reproduce_zwicker_figure14(Findings& findings, const Progress& progress) {
                          {"zwicker-fig14-" + zebra.name + "-reference", "64 samples a pixel, filtered",
                           std::move(row.reference)}});
     }
-    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
+    tell(progress, i + 1, cases.size());
   }
   findings.say(text);
   findings.result("zwicker_fig14", std::move(json));
