@@ -8,6 +8,7 @@
 #include "model/draw.h"
 #include "model/error.h"
 #include "model/isa/program.h"
+#include "model/machine/machine.h"
 #include "model/output/output.h"
 #include "model/stop.h"
 
@@ -174,6 +175,10 @@ class Renderer {
 };
 
 }  // namespace
+
+RenderOptions render_options(const Machine& machine, Record record) {
+  return {.formats = machine.numbers, .vertex_cache_entries = machine.vertex.cache_entries, .record = record};
+}
 
 Rendered render(const Trace& trace, const RenderOptions& options, const std::function<void(double)>& progress,
                 const std::function<void(const Frame&)>& on_frame,

@@ -13,6 +13,8 @@
 // The whole machine as a function: a trace in, its frames and its work out. No time.
 namespace splatscope {
 
+struct Machine;
+
 // What is noted of the work, for the timing: nothing, all, or as much as an estimate looks at (DrawWork).
 enum class Record : std::uint8_t { nothing, samples, everything };
 
@@ -21,6 +23,9 @@ struct RenderOptions {
   int vertex_cache_entries = 18;  // post-transform FIFO; a vertex still in it is not shaded again
   Record record = Record::everything;
 };
+
+// As `machine` draws.
+RenderOptions render_options(const Machine& machine, Record record = Record::everything);
 
 // What became of the triangles and fragments of a trace.
 struct RenderCounters {

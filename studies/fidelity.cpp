@@ -39,10 +39,7 @@ FidelityRow row_of(const FidelityFrame& frame, std::string_view machine, Fidelit
 }
 
 std::vector<DrawWork> work_of(const Trace& trace, const Machine& machine) {
-  RenderOptions options;
-  options.formats = machine.numbers;
-  options.vertex_cache_entries = machine.vertex.cache_entries;
-  return render(trace, options).work;
+  return render(trace, render_options(machine)).work;
 }
 
 // What other samples say; a frame that is simulated whole is the same by every seed.

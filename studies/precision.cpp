@@ -41,9 +41,7 @@ Frame draw_with_weight(traces::Scene scene, double weight, const NumberFormats& 
   traces::CapturedWeights weights;
   weights.weights.resize(scene.surfels.size(), traces::equal_weights(weight));
   scene.splatting.algorithm = traces::Algorithm::ewa_per_surfel;
-  return render(traces::record(scene, weights).trace,
-                {.formats = numbers, .vertex_cache_entries = 18, .record = Record::nothing})
-      .frame;
+  return render(traces::record(scene, weights).trace, {.formats = numbers, .record = Record::nothing}).frame;
 }
 
 // The plane at 45 degrees, green, with waves that it hides nothing of: flat splats of a curved surface.
@@ -159,8 +157,7 @@ Frame draw(const traces::Scene& original, const Pipeline& pipeline) {
       pipeline.texture_size > 0 ? pipeline.texture_size : kernels::optimal_length(pipeline.cutoff);
   const auto shape = pipeline.circular ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
   trace.textures[0] = kernels::alpha_texture(pipeline.cutoff, size, shape, pipeline.texel_bits);
-  return render(trace, {.formats = pipeline.numbers, .vertex_cache_entries = 18, .record = Record::nothing})
-      .frame;
+  return render(trace, {.formats = pipeline.numbers, .record = Record::nothing}).frame;
 }
 
 std::vector<SwitchRow> switch_rows(std::span<const Switch> switches, std::span<const PrecisionScene> scenes,

@@ -168,9 +168,7 @@ void load_libraries() {
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,
                    const OnFrame& on_frame, const TimingOptions& timing) {
   const auto start = HostClock::now();
-  RenderOptions options;
-  options.formats = machine.numbers;
-  options.vertex_cache_entries = machine.vertex.cache_entries;
+  RenderOptions options = render_options(machine);
   if (fidelity == Fidelity::functional) options.record = Record::nothing;
   if (fidelity == Fidelity::throughput) options.record = Record::samples;
   if (timing.heat_maps) options.record = Record::everything;

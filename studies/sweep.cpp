@@ -72,9 +72,7 @@ WorkStream compute(const Trace& trace, const RenderOptions& options) {
 // From the cache where there is one that holds it.
 WorkStream work_of(const Trace& trace, const Machine& machine, const std::optional<WorkCache>& cache,
                    Sweep& sweep) {
-  RenderOptions options;
-  options.formats = machine.numbers;
-  options.vertex_cache_entries = machine.vertex.cache_entries;
+  const RenderOptions options = render_options(machine);
   if (!cache) {
     ++sweep.functions;
     return compute(trace, options);

@@ -143,10 +143,7 @@ class Drawings {
     drawing.trace = algorithm == Algorithm::ewa_per_pixel
                         ? traces::record(scene, machine.numbers).trace
                         : traces::record(scene, weights_of(hardware.frame, machine.numbers)).trace;
-    RenderOptions options;
-    options.formats = machine.numbers;
-    options.vertex_cache_entries = machine.vertex.cache_entries;
-    Rendered rendered = render(drawing.trace, options);
+    Rendered rendered = render(drawing.trace, render_options(machine));
     drawing.work = std::move(rendered.work);
     drawing.psnr = psnr(rendered.frame, reference_);
     if (hardware.geometry == Geometry::point_sprites) make_sprites(drawing.trace);

@@ -52,18 +52,11 @@ Trace plane_of_several_draws(const Machine& machine) {
   return traces::record(scene, machine.numbers).trace;
 }
 
-Rendered with_all_work(const Trace& trace, const Machine& machine) {
-  RenderOptions options;
-  options.formats = machine.numbers;
-  options.vertex_cache_entries = machine.vertex.cache_entries;
-  return render(trace, options);
-}
-
 // An estimate needs no more of the work than the samples that are recorded for it.
 TEST(RunFrame, ThroughputOfSamplesIsThatOfAllWork) {
   const Machine machine = machine::load("geforce4-ti4400");
   const Trace trace = plane_of_several_draws(machine);
-  const Rendered rendered = with_all_work(trace, machine);
+  const Rendered rendered = render(trace, render_options(machine));
   const sim::Result estimate = time_frame(trace, rendered.work, machine, Fidelity::throughput);
   const FrameRun run = run_frame(trace, machine, Fidelity::throughput);
   EXPECT_EQ(run.timing->cycles, estimate.cycles);
@@ -77,7 +70,7 @@ TEST(RunFrame, ThroughputOfSamplesIsThatOfAllWork) {
 TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
   const Machine machine = machine::load("radeon-8500");
   const Trace trace = plane_of_several_draws(machine);
-  const Rendered rendered = with_all_work(trace, machine);
+  const Rendered rendered = render(trace, render_options(machine));
   ASSERT_GT(rendered.work.size(), 2u);  // several draws, or nothing runs beside anything
   const sim::Result timing = sim::simulate(trace, rendered.work, machine);
   const FrameRun run = run_frame(trace, machine, Fidelity::cycle);

@@ -164,10 +164,7 @@ TEST_P(ReducedFrame, WhatWasLeftOutChangesNothing) {
   const Trace trace = traces::record(reduced_scene(algorithm), machine.numbers).trace;
   const FrameRun run = run_frame(trace, machine, Fidelity::cycle);
   const sim::Result& needed = *run.timing;
-  RenderOptions options;
-  options.formats = machine.numbers;
-  options.vertex_cache_entries = machine.vertex.cache_entries;
-  const Rendered rendered = render(trace, options);
+  const Rendered rendered = render(trace, render_options(machine));
   const sim::Result all =
       sim::simulate(trace, rendered.work, machine, sim::Scheduler::skip_ahead, {}, {}, sim::UnitChoice::all);
   EXPECT_EQ(rendered.frame, run.rendered.frame);

@@ -16,10 +16,7 @@ void render_frame(benchmark::State& state, Record record_what) {
   static const Recording recording = record(load_scene("checkerboard-ewa-per-surfel"), machine.numbers, {});
   const auto threads = static_cast<std::size_t>(state.range(0));
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-  RenderOptions options;
-  options.formats = machine.numbers;
-  options.vertex_cache_entries = machine.vertex.cache_entries;
-  options.record = record_what;
+  const RenderOptions options = render_options(machine, record_what);
   for (auto _ : state) benchmark::DoNotOptimize(render(recording.trace, options));
 }
 BENCHMARK_CAPTURE(render_frame, frame, Record::nothing)

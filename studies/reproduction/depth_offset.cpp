@@ -33,9 +33,7 @@ OffsetRun run_with_offset(const traces::Scene& scene, traces::DepthOffsetScheme 
                           const VisibleSurface& surface) {
   const traces::Scene drawn = with_offset(scene, scheme, z_t);
   Trace trace = traces::record(drawn, weights).trace;
-  RenderOptions options;
-  options.formats = machine.numbers;
-  Rendered rendered = render(trace, options);
+  Rendered rendered = render(trace, render_options(machine));
   const FragmentCounts counts = count_fragments(drawn, trace, rendered, surface);
   return {std::move(trace), std::move(rendered), counts};
 }

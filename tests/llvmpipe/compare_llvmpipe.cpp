@@ -51,10 +51,7 @@ void compare(int rounds) {
   const Machine machine = machine::load("geforce4-ti4400");
   const Trace trace =
       traces::record(traces::load_scene("checkerboard-ewa-per-surfel"), machine.numbers, {}).trace;
-  RenderOptions options;
-  options.formats = machine.numbers;
-  options.vertex_cache_entries = machine.vertex.cache_entries;
-  options.record = Record::nothing;
+  const RenderOptions options = render_options(machine, Record::nothing);
   const GlRenderer mesa(trace);
   Rendered rendered = render(trace, options);  // both once before it counts
   mesa.draw();
