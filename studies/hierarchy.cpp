@@ -32,12 +32,6 @@ traces::Scene from_near(traces::Scene scene) {
   return scene;
 }
 
-traces::CapturedWeights equal(const traces::Scene& scene) {
-  traces::CapturedWeights weights;
-  weights.weights.resize(scene.surfels.size(), traces::equal_weights(scene.splatting.gamma));
-  return weights;
-}
-
 double rate(const Trace& trace, const Machine& machine) {
   return run_frame(trace, machine, Fidelity::throughput).timing->frames_per_second();
 }
@@ -208,7 +202,8 @@ CullingRow culling_row(traces::Scene scene, const Machine& machine) {
   CullingRow row;
   row.surfels = scene.surfels.size();
   row.could_go = classify(scene);
-  const traces::CapturedWeights weights = equal(scene);
+  const traces::CapturedWeights weights =
+      traces::uniform_weights(scene.surfels.size(), scene.splatting.gamma);
   scene.hierarchy.culling = traces::Culling::off;
   row.fps_all = rate(traces::record(scene, weights).trace, machine);
   scene.hierarchy.culling = traces::Culling::blocks;

@@ -146,8 +146,8 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   row.reference = picture_of(reference);
 
   const auto start = HostClock::now();
-  const traces::CapturedWeights captured = traces::capture_weights(
-      scene.surfels, scene.splatting, scene.capture, machine.numbers, part(progress, 0, 0.8));
+  const traces::CapturedWeights captured =
+      traces::capture_weights(scene, machine.numbers, part(progress, 0, 0.8));
   row.capture_seconds = seconds_since(start);
   row.unseen = captured.unseen;
   std::vector<traces::VertexWeights> exact;

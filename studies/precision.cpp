@@ -38,8 +38,7 @@ PrecisionScene with_references(std::string name, const traces::Scene& scene, boo
 
 // Every splat with the same weight, whatever its surroundings.
 Frame draw_with_weight(traces::Scene scene, double weight, const NumberFormats& numbers) {
-  traces::CapturedWeights weights;
-  weights.weights.resize(scene.surfels.size(), traces::equal_weights(weight));
+  const traces::CapturedWeights weights = traces::uniform_weights(scene.surfels.size(), weight);
   scene.splatting.algorithm = traces::Algorithm::ewa_per_surfel;
   return render(traces::record(scene, weights).trace, {.formats = numbers, .record = Record::nothing}).frame;
 }

@@ -31,7 +31,7 @@ class Drawing {
  public:
   Drawing(traces::Scene scene, Machine machine) : scene_(std::move(scene)), machine_(std::move(machine)) {
     scene_.splatting.algorithm = traces::Algorithm::ewa_per_surfel;
-    weights_ = traces::capture_weights(scene_.surfels, scene_.splatting, scene_.capture, machine_.numbers);
+    weights_ = traces::capture_weights(scene_, machine_.numbers);
   }
   FrameRun by(std::string_view program, Fidelity fidelity) {
     const auto programs = kernels::ewa_programs();

@@ -166,8 +166,7 @@ std::vector<VertexDataRow> vertex_data_rows(const traces::Scene& scene, const Pr
   for (const std::string_view name : kMachines) {
     const Machine machine = machine::load(std::string(name));
     // Captured without prefilter: the same whatever the programs.
-    const traces::CapturedWeights weights =
-        traces::capture_weights(scene.surfels, scene.splatting, scene.capture, machine.numbers);
+    const traces::CapturedWeights weights = traces::capture_weights(scene, machine.numbers);
     std::optional<Frame> first;
     for (const ProgramPair& pair : kPairs) {
       traces::Scene changed = scene;

@@ -156,9 +156,7 @@ class Drawings {
   const traces::CapturedWeights& weights_of(std::string_view frame, const NumberFormats& numbers) {
     const auto found = weights_.find(frame);
     if (found != weights_.end()) return found->second;
-    return weights_
-        .emplace(frame, traces::capture_weights(scene_.surfels, scene_.splatting, scene_.capture, numbers))
-        .first->second;
+    return weights_.emplace(frame, traces::capture_weights(scene_, numbers)).first->second;
   }
 
   const traces::Scene& scene_;

@@ -46,9 +46,7 @@ CapturedWeights weights_of(std::span<const Surfel> surfels, const Scene& scene, 
                            const NumberFormats& formats, const std::function<void(double)>& progress) {
   if (scene.splatting.algorithm != Algorithm::ewa_per_pixel)
     return capture_weights(surfels, splatting, scene.capture, formats, progress);
-  CapturedWeights equal;
-  equal.weights.resize(surfels.size(), equal_weights(splatting.gamma));
-  return equal;
+  return uniform_weights(surfels.size(), splatting.gamma);
 }
 
 // The LDC tree of a scene, and what its camera needs of it.

@@ -170,7 +170,7 @@ TEST(Recorder, CapturedWeightsAreTheInverseSums) {
   NumberFormats formats;
   formats.frame = FrameFormat::float32;
   formats.color = ColorFormat::float32;
-  const CapturedWeights captured = capture_weights(scene.surfels, scene.splatting, scene.capture, formats);
+  const CapturedWeights captured = capture_weights(scene, formats);
   EXPECT_EQ(scene.surfels.size(), captured.captured);
   for (std::size_t row = 3; row < 17; ++row) {
     for (std::size_t column = 3; column < 21; ++column) {

@@ -224,4 +224,15 @@ CapturedWeights capture_weights(std::span<const Surfel> surfels, const Splatting
   return out;
 }
 
+CapturedWeights capture_weights(const Scene& scene, const NumberFormats& formats,
+                                const std::function<void(double)>& progress) {
+  return capture_weights(scene.surfels, scene.splatting, scene.capture, formats, progress);
+}
+
+CapturedWeights uniform_weights(std::size_t surfels, double weight) {
+  CapturedWeights out;
+  out.weights.resize(surfels, equal_weights(weight));
+  return out;
+}
+
 }  // namespace splatscope::traces

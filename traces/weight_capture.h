@@ -29,5 +29,11 @@ struct CapturedWeights {
 CapturedWeights capture_weights(std::span<const Surfel> surfels, const Splatting& splatting,
                                 const Capture& capture, const NumberFormats& formats,
                                 const std::function<void(double)>& progress = {});
+// Those of a scene.
+CapturedWeights capture_weights(const Scene& scene, const NumberFormats& formats,
+                                const std::function<void(double)>& progress = {});
+
+// The same for each of so many surfels: nothing is captured.
+CapturedWeights uniform_weights(std::size_t surfels, double weight);
 
 }  // namespace splatscope::traces

@@ -19,8 +19,7 @@ class DepthOffset : public testing::Test {
   const traces::Scene scene_ = small_knot();
   const Machine machine_ = machine::load("geforce4-ti4400");
   const VisibleSurface surface_ = visible_surface(scene_);
-  const traces::CapturedWeights weights_ =
-      traces::capture_weights(scene_.surfels, scene_.splatting, scene_.capture, machine_.numbers);
+  const traces::CapturedWeights weights_ = traces::capture_weights(scene_, machine_.numbers);
 };
 
 TEST_F(DepthOffset, AlongTheCamerasAxisHidesWhatIsVisible) {

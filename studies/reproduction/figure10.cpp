@@ -52,18 +52,6 @@ void draw_box(const traces::Scene& scene, Image& image) {
   }
 }
 
-// All the same: nothing is normalised.
-traces::CapturedWeights unnormalized(const traces::Scene& scene, double weight) {
-  traces::CapturedWeights weights;
-  weights.weights.resize(scene.surfels.size(), traces::equal_weights(weight));
-  return weights;
-}
-
-traces::CapturedWeights capture(const traces::Scene& scene, const Machine& machine,
-                                const Progress& progress = {}) {
-  return traces::capture_weights(scene.surfels, scene.splatting, scene.capture, machine.numbers, progress);
-}
-
 class Figure10 {
  public:
   Figure10(Findings& findings, const Progress& progress) : findings_(findings), progress_(progress) {}
@@ -92,23 +80,27 @@ class Figure10 {
     const traces::Scene scene = figure10_model();
     const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
     add("direct", "a) without normalisation: every weight is 1",
-        draw_weighted(scene, unnormalized(scene, 1), machine_), reference);
+        draw_weighted(scene, traces::uniform_weights(scene.surfels.size(), 1), machine_), reference);
     traces::Scene marked = scene;
     mark_half(marked);
-    const traces::CapturedWeights boxed = capture(marked, machine_, part(progress_, 0.05, 0.2));
+    const traces::CapturedWeights boxed =
+        traces::capture_weights(marked, machine_.numbers, part(progress_, 0.05, 0.2));
     add("box",
         fmt::format("b) weights captured in the box alone: {} surfels, {} outside", boxed.captured,
                     boxed.outside_box),
         draw_weighted(scene, boxed, machine_), reference);
     draw_box(marked, pictures_.back().image);
-    const traces::CapturedWeights all = capture(scene, machine_, part(progress_, 0.2, 0.4));
+    const traces::CapturedWeights all =
+        traces::capture_weights(scene, machine_.numbers, part(progress_, 0.2, 0.4));
     add("per-surfel",
         fmt::format("c) per surfel: {} captured, {} seen from no view", all.captured, all.unseen),
         draw_weighted(scene, all, machine_), reference);
     traces::Scene per_pixel = scene;
     per_pixel.splatting.algorithm = traces::Algorithm::ewa_per_pixel;
     add("per-pixel", "normalised per pixel",
-        draw_weighted(per_pixel, unnormalized(scene, scene.splatting.gamma), machine_), reference);
+        draw_weighted(per_pixel, traces::uniform_weights(scene.surfels.size(), scene.splatting.gamma),
+                      machine_),
+        reference);
     results_["surfels"] = {{"captured", all.captured}, {"unseen", all.unseen}};
     results_["box_surfels"] = {{"captured", boxed.captured}, {"outside_box", boxed.outside_box}};
     show();
@@ -119,7 +111,7 @@ class Figure10 {
     const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
     for (const bool on : {false, true}) {
       scene.capture.corner_weights = on;
-      const traces::CapturedWeights weights = capture(scene, machine_);
+      const traces::CapturedWeights weights = traces::capture_weights(scene, machine_.numbers);
       add(on ? "corner-weights" : "no-corner-weights",
           on ? fmt::format("a weight for each vertex of the {} surfels at edges", weights.at_edges)
              : "one weight a surfel, at the edges too",
@@ -209,11 +201,11 @@ std::vector<GammaRow> sweep_gamma(const traces::Scene& scene, std::span<const do
   traces::Scene changed = scene;
   for (const double gamma : gammas) {
     changed.splatting.gamma = gamma;
-    const traces::CapturedWeights equal = unnormalized(scene, gamma);
+    const traces::CapturedWeights equal = traces::uniform_weights(scene.surfels.size(), gamma);
     const Trace sums =
         traces::splat_trace({scene.surfels, equal.weights}, traces::view_of(scene.camera, scene.frame),
                             changed.splatting, {.prefilter = false, .sum_weights = true});
-    const traces::CapturedWeights captured = capture(changed, machine);
+    const traces::CapturedWeights captured = traces::capture_weights(changed, machine.numbers);
     rows.push_back({gamma, saturated_share(run_frame(sums, machine, Fidelity::functional).rendered.frame),
                     clamped_share(captured, gamma),
                     psnr(draw_weighted(changed, captured, machine), reference)});

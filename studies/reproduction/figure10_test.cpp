@@ -36,8 +36,7 @@ TEST(Figure10, WeightsMakeThePicture) {
   const traces::Scene scene = small_knot();
   const Machine machine = machine::load("geforce4-ti4400");
   const auto reference = screen_space_reference(scene);
-  traces::CapturedWeights weights =
-      traces::capture_weights(scene.surfels, scene.splatting, scene.capture, machine.numbers);
+  traces::CapturedWeights weights = traces::capture_weights(scene, machine.numbers);
   const double normalized = psnr(draw_weighted(scene, weights, machine), reference);
   std::ranges::fill(weights.weights, traces::equal_weights(1));
   const double direct = psnr(draw_weighted(scene, weights, machine), reference);

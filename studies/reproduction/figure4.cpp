@@ -83,8 +83,8 @@ void reproduce_figure4(Findings& findings, const Progress& progress) {
   const traces::Scene scene = figure4_scene();
   const Machine machine = machine::load("geforce4-ti4400");
   const VisibleSurface surface = visible_surface(scene);
-  const traces::CapturedWeights weights = traces::capture_weights(
-      scene.surfels, scene.splatting, scene.capture, machine.numbers, part(progress, 0, 0.8));
+  const traces::CapturedWeights weights =
+      traces::capture_weights(scene, machine.numbers, part(progress, 0, 0.8));
   findings.report().heading("Fig. 4: the depth offset along camera z and along viewing rays");
   compare_schemes("fig4", scene, weights, machine, surface, findings);
 

@@ -94,8 +94,8 @@ void reproduce_figure5(Findings& findings, const Progress& progress) {
   const traces::Scene scene = figure5_scene();
   const Machine machine = machine::load("geforce4-ti4400");
   const VisibleSurface surface = visible_surface(scene);
-  const traces::CapturedWeights weights = traces::capture_weights(
-      scene.surfels, scene.splatting, scene.capture, machine.numbers, part(progress, 0, 0.4));
+  const traces::CapturedWeights weights =
+      traces::capture_weights(scene, machine.numbers, part(progress, 0, 0.4));
   findings.report().heading("Fig. 5: the two depth offset schemes on a model");
   compare_schemes("fig5", scene, weights, machine, surface, findings);
   const std::vector<OffsetRow> rows =

@@ -134,8 +134,7 @@ std::vector<Table1Row> table1_rows(const Progress& progress) {
     const traces::Scene scene = traces::load_scene(fmt::format("checkerboard-{}", published.algorithm));
     const bool per_pixel = scene.splatting.algorithm == traces::Algorithm::ewa_per_pixel;
     if (!per_pixel && !weights.contains(published.machine)) {
-      weights.emplace(published.machine, traces::capture_weights(scene.surfels, scene.splatting,
-                                                                 scene.capture, machine.numbers));
+      weights.emplace(published.machine, traces::capture_weights(scene, machine.numbers));
     }
     const Trace trace = per_pixel ? traces::record(scene, machine.numbers).trace
                                   : traces::record(scene, weights.find(published.machine)->second).trace;

@@ -137,8 +137,7 @@ TEST(BlockChoice, ProgressiveFramesRefineToTheSamePicture) {
 
 TEST(BlockChoice, WeightsOfTheFinestLevelAreNotEnoughForCoarserOnes) {
   Scene scene = small_model("progressive = true\n");
-  CapturedWeights weights;
-  weights.weights.resize(scene.surfels.size(), equal_weights(0.5));
+  const CapturedWeights weights = uniform_weights(scene.surfels.size(), 0.5);
   EXPECT_THROW(record(scene, weights), ModelError);
   scene.hierarchy.progressive = false;
   EXPECT_NO_THROW(record(scene, weights));

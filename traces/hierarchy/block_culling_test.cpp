@@ -22,12 +22,6 @@ Scene small_model(std::string_view generator) {
                      "model.toml");
 }
 
-CapturedWeights equal(const Scene& scene) {
-  CapturedWeights weights;
-  weights.weights.resize(scene.surfels.size(), equal_weights(scene.splatting.gamma));
-  return weights;
-}
-
 // Anywhere about or inside a model of radius 1 about the origin, looking anywhere; the near plane may cut it.
 Camera any_camera(std::mt19937& random) {
   const auto between = [&](double low, double high) {
@@ -78,7 +72,7 @@ Drawn drawn(Scene scene, const CapturedWeights& weights, Culling culling) {
 void expect_same_pictures(const char* generator, const char* settings_name, auto&& change) {
   Scene scene = small_model(generator);
   change(scene);
-  const CapturedWeights weights = equal(scene);
+  const CapturedWeights weights = uniform_weights(scene.surfels.size(), scene.splatting.gamma);
   const unsigned seed = std::random_device{}();
   std::mt19937 random(seed);
   for (int i = 0; i < 30; ++i) {
