@@ -10,7 +10,6 @@
 #include "kernels/object_space_ewa/alpha_texture.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
-#include "traces/recorder.h"
 
 namespace splatscope::studies {
 namespace {
@@ -27,12 +26,6 @@ traces::Scene plane(double cutoff, bool circle) {
           "[splatting]\nalgorithm = \"ewa-per-pixel\"\ngamma = 0.45\ncutoff = {}\ncircular_cutoff = {}\n",
           cutoff, circle),
       "plane.toml");
-}
-
-double picture_psnr(const traces::Scene& scene, const Machine& machine,
-                    const kernels::ReferencePicture& reference) {
-  const Trace trace = traces::record(scene, machine.numbers).trace;
-  return psnr(run_frame(trace, machine, Fidelity::functional).rendered.frame, reference);
 }
 
 Machine with_float_frame(Machine machine) {
@@ -174,8 +167,8 @@ std::vector<TextureRow> texture_rows(const traces::Scene& scene, std::span<const
   for (const int length : lengths) {
     changed.splatting.texture_length = length;
     TextureRow row = describe_texture(scene.splatting.cutoff, length);
-    row.psnr_float = picture_psnr(changed, exact, reference);
-    row.psnr = picture_psnr(changed, machine, reference);
+    row.psnr_float = psnr(draw_frame(changed, exact), reference);
+    row.psnr = psnr(draw_frame(changed, machine), reference);
     rows.push_back(row);
   }
   return rows;

@@ -54,10 +54,6 @@ kernels::ScreenSpacePicture undivided(kernels::ScreenSpacePicture picture) {
   return picture;
 }
 
-Frame draw(const traces::Scene& scene, const traces::CapturedWeights& weights, const Machine& machine) {
-  return run_frame(traces::record(scene, weights).trace, machine, Fidelity::functional).rendered.frame;
-}
-
 nlohmann::ordered_json json_of(const Comparison& c) {
   return {{"psnr_decibels", c.psnr},
           {"psnr_off_edges_decibels", c.psnr_off_edges},
@@ -159,17 +155,16 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   row.captured = compare(frame_of(same_weights), reference);
   Machine exact_frame = machine;
   exact_frame.numbers.frame = FrameFormat::float32;
-  const Frame unrounded = draw(scene, captured, exact_frame);
+  const Frame unrounded = draw_frame(scene, captured, exact_frame);
   row.float_frame = compare(unrounded, reference);
-  const Frame frame = draw(scene, captured, machine);
+  const Frame frame = draw_frame(scene, captured, machine);
   const auto draw_unrounded = [&] { return Frame(unrounded); };
   row.per_surfel = compare(frame, reference, draw_unrounded);
   row.same_weights = compare(frame, undivided(same_weights), draw_unrounded);
   row.picture = picture_of(frame);
   scene.splatting.algorithm = traces::Algorithm::ewa_per_pixel;
   const Trace per_pixel = traces::record(scene, machine.numbers).trace;
-  row.per_pixel = compare(run_frame(per_pixel, machine, Fidelity::functional).rendered.frame, per_pixel,
-                          machine, reference);
+  row.per_pixel = compare(draw_frame(per_pixel, machine), per_pixel, machine, reference);
   if (progress) progress(1);
   return row;
 }

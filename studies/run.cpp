@@ -184,12 +184,23 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   return run;
 }
 
+Frame draw_frame(const Trace& trace, const Machine& machine) {
+  return run_frame(trace, machine, Fidelity::functional).rendered.frame;
+}
+
+Frame draw_frame(const traces::Scene& scene, const traces::CapturedWeights& weights, const Machine& machine) {
+  return draw_frame(traces::record(scene, weights).trace, machine);
+}
+
+Frame draw_frame(const traces::Scene& scene, const Machine& machine, const Progress& progress) {
+  return draw_frame(traces::record(scene, machine.numbers, progress).trace, machine);
+}
+
 Comparison compare(const Frame& frame, const Trace& trace, const Machine& machine,
                    const kernels::ScreenSpacePicture& reference) {
   Machine exact = machine;
   exact.numbers.frame = FrameFormat::float32;
-  return compare(frame, reference,
-                 [&] { return run_frame(trace, exact, Fidelity::functional).rendered.frame; });
+  return compare(frame, reference, [&] { return draw_frame(trace, exact); });
 }
 
 Image picture_of(const Frame& frame) {

@@ -92,6 +92,11 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
                    const Progress& progress = {}, const OnFrame& on_frame = {},
                    const TimingOptions& timing = {});
 
+// The last frame alone (functional): of a trace, or of a scene recorded with given weights or with its own.
+Frame draw_frame(const Trace& trace, const Machine& machine);
+Frame draw_frame(const traces::Scene& scene, const traces::CapturedWeights& weights, const Machine& machine);
+Frame draw_frame(const traces::Scene& scene, const Machine& machine, const Progress& progress = {});
+
 // Compares the frame that `trace` left on `machine` with the reference, and draws it once more with a frame
 // buffer of floats where pixels that rounded to black have to be told from holes.
 Comparison compare(const Frame& frame, const Trace& trace, const Machine& machine,

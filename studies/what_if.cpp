@@ -201,9 +201,8 @@ WhatIfPicture what_if_picture(const traces::Scene& scene, std::string_view machi
                               Algorithm algorithm) {
   const traces::Scene changed = scene_with(scene, hardware, algorithm);
   const Machine with = machine_with(machine, hardware);
-  const Trace trace = traces::record(changed, with.numbers).trace;
-  const FrameRun run = run_frame(trace, with, Fidelity::functional);
-  return {picture_of(run.rendered.frame), psnr(run.rendered.frame, scene_reference(scene))};
+  const Frame frame = draw_frame(changed, with);
+  return {picture_of(frame), psnr(frame, scene_reference(scene))};
 }
 
 std::string header_of_what_ifs() {

@@ -80,7 +80,7 @@ class Figure10 {
     const traces::Scene scene = figure10_model();
     const kernels::ScreenSpacePicture reference = screen_space_reference(scene);
     add("direct", "a) without normalisation: every weight is 1",
-        draw_weighted(scene, traces::uniform_weights(scene.surfels.size(), 1), machine_), reference);
+        draw_frame(scene, traces::uniform_weights(scene.surfels.size(), 1), machine_), reference);
     traces::Scene marked = scene;
     mark_half(marked);
     const traces::CapturedWeights boxed =
@@ -88,18 +88,17 @@ class Figure10 {
     add("box",
         fmt::format("b) weights captured in the box alone: {} surfels, {} outside", boxed.captured,
                     boxed.outside_box),
-        draw_weighted(scene, boxed, machine_), reference);
+        draw_frame(scene, boxed, machine_), reference);
     draw_box(marked, pictures_.back().image);
     const traces::CapturedWeights all =
         traces::capture_weights(scene, machine_.numbers, part(progress_, 0.2, 0.4));
     add("per-surfel",
         fmt::format("c) per surfel: {} captured, {} seen from no view", all.captured, all.unseen),
-        draw_weighted(scene, all, machine_), reference);
+        draw_frame(scene, all, machine_), reference);
     traces::Scene per_pixel = scene;
     per_pixel.splatting.algorithm = traces::Algorithm::ewa_per_pixel;
     add("per-pixel", "normalised per pixel",
-        draw_weighted(per_pixel, traces::uniform_weights(scene.surfels.size(), scene.splatting.gamma),
-                      machine_),
+        draw_frame(per_pixel, traces::uniform_weights(scene.surfels.size(), scene.splatting.gamma), machine_),
         reference);
     results_["surfels"] = {{"captured", all.captured}, {"unseen", all.unseen}};
     results_["box_surfels"] = {{"captured", boxed.captured}, {"outside_box", boxed.outside_box}};
@@ -115,7 +114,7 @@ class Figure10 {
       add(on ? "corner-weights" : "no-corner-weights",
           on ? fmt::format("a weight for each vertex of the {} surfels at edges", weights.at_edges)
              : "one weight a surfel, at the edges too",
-          draw_weighted(scene, weights, machine_), reference);
+          draw_frame(scene, weights, machine_), reference);
     }
     show();
   }
@@ -189,11 +188,6 @@ traces::Scene figure10_sheet() {
       "sheet.toml");
 }
 
-Frame draw_weighted(const traces::Scene& scene, const traces::CapturedWeights& weights,
-                    const Machine& machine) {
-  return run_frame(traces::record(scene, weights).trace, machine, Fidelity::functional).rendered.frame;
-}
-
 std::vector<GammaRow> sweep_gamma(const traces::Scene& scene, std::span<const double> gammas,
                                   const Machine& machine, const kernels::ScreenSpacePicture& reference,
                                   const Progress& progress) {
@@ -206,9 +200,8 @@ std::vector<GammaRow> sweep_gamma(const traces::Scene& scene, std::span<const do
         traces::splat_trace({scene.surfels, equal.weights}, traces::view_of(scene.camera, scene.frame),
                             changed.splatting, {.prefilter = false, .sum_weights = true});
     const traces::CapturedWeights captured = traces::capture_weights(changed, machine.numbers);
-    rows.push_back({gamma, saturated_share(run_frame(sums, machine, Fidelity::functional).rendered.frame),
-                    clamped_share(captured, gamma),
-                    psnr(draw_weighted(changed, captured, machine), reference)});
+    rows.push_back({gamma, saturated_share(draw_frame(sums, machine)), clamped_share(captured, gamma),
+                    psnr(draw_frame(changed, captured, machine), reference)});
     tell(progress, rows.size(), gammas.size());
   }
   return rows;

@@ -5,10 +5,8 @@
 
 #include "kernels/reference/screen_space.h"
 #include "model/machine/machine.h"
-#include "model/output/frame.h"
 #include "studies/study.h"
 #include "traces/scene.h"
-#include "traces/weight_capture.h"
 
 // Normalisation of the splats' weights (Ren 2002, section 7): Fig. 10, and what the text says beside it.
 namespace splatscope::studies {
@@ -27,10 +25,6 @@ struct GammaRow {
 std::vector<GammaRow> sweep_gamma(const traces::Scene& scene, std::span<const double> gammas,
                                   const Machine& machine, const kernels::ScreenSpacePicture& reference,
                                   const Progress& progress = {});
-
-// The scene's picture with these weights, in 8 bits as the machine draws it.
-Frame draw_weighted(const traces::Scene& scene, const traces::CapturedWeights& weights,
-                    const Machine& machine);
 
 void reproduce_figure10(Findings& findings, const Progress& progress);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "studies/reference_comparison.h"
+#include "studies/run.h"
 
 namespace splatscope::studies {
 namespace {
@@ -37,9 +38,9 @@ TEST(Figure10, WeightsMakeThePicture) {
   const Machine machine = machine::load("geforce4-ti4400");
   const auto reference = screen_space_reference(scene);
   traces::CapturedWeights weights = traces::capture_weights(scene, machine.numbers);
-  const double normalized = psnr(draw_weighted(scene, weights, machine), reference);
+  const double normalized = psnr(draw_frame(scene, weights, machine), reference);
   std::ranges::fill(weights.weights, traces::equal_weights(1));
-  const double direct = psnr(draw_weighted(scene, weights, machine), reference);
+  const double direct = psnr(draw_frame(scene, weights, machine), reference);
   EXPECT_GT(normalized, direct + 6);
 }
 

@@ -9,8 +9,7 @@ namespace splatscope::studies {
 
 CheckerboardPicture draw_checkerboard(const traces::Scene& scene, const kernels::ReferencePicture& reference,
                                       const Machine& machine, const Progress& progress) {
-  const Trace trace = traces::record(scene, machine.numbers, progress).trace;
-  Frame frame = run_frame(trace, machine, Fidelity::functional).rendered.frame;
+  Frame frame = draw_frame(scene, machine, progress);
   const double decibels = psnr(frame, reference);
   return {std::move(frame), decibels};
 }

@@ -33,7 +33,7 @@ std::vector<Shown> shown_models() {
 ModelPicture draw_model(const traces::Scene& scene, const Machine& machine, const Progress& progress) {
   kernels::ScreenSpacePicture reference = screen_space_reference(scene);
   const Trace trace = traces::record(scene, machine.numbers, progress).trace;
-  Frame frame = run_frame(trace, machine, Fidelity::functional).rendered.frame;
+  Frame frame = draw_frame(trace, machine);
   const Comparison comparison = compare(frame, trace, machine, reference);
   return {std::move(frame), std::move(reference), comparison};
 }

@@ -88,8 +88,7 @@ std::vector<DepthImage> depth_images(const traces::Scene& scene, std::span<const
   const double most = scene.splatting.depth_offset + mean_radius(scene);
   std::vector<DepthImage> images;
   for (const double side : sides) {
-    FrameRun run = run_frame(depth_trace(scene, side), machine, Fidelity::functional);
-    DepthImage image{side, std::move(run.rendered.frame), 0, {}};
+    DepthImage image{side, draw_frame(depth_trace(scene, side), machine), 0, {}};
     for (int y = 0; y < surface.height; ++y) {
       for (int x = 0; x < surface.width; ++x) {
         if (!is_inside(surface, x, y)) continue;
