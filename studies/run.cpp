@@ -89,6 +89,11 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
   }
 }
 
+Rate rate_of(const sim::Result& timing) {
+  const sim::UnitBooks& busiest = timing.busiest();
+  return {timing.frames_per_second(), busiest.name, timing.share(busiest.busy)};
+}
+
 namespace {
 
 // The throughput of each draw after its function, while its work is at hand.

@@ -86,6 +86,14 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
 // of a second of the loader for OpenImageIO. Throws std::runtime_error where that cannot be loaded.
 void load_libraries();
 
+// Frames a second, and the unit that is busy for the largest share of the frame.
+struct Rate {
+  double fps = 0;
+  std::string bottleneck;
+  double share = 0;  // of the frame, 0 to 1
+};
+Rate rate_of(const sim::Result& timing);
+
 // Where every event is simulated (cycle, referee), the function of the next draws runs in a thread beside the
 // time of this one, and calls `on_frame`. The records of work are dropped once they are simulated.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,

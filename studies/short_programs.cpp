@@ -67,11 +67,6 @@ std::vector<double> psnr_by_program(Drawing drawing, std::span<const std::string
 
 }  // namespace
 
-Rate rate_of(const sim::Result& timing) {
-  const sim::UnitBooks& busiest = timing.busiest();
-  return {timing.frames_per_second(), busiest.name, timing.share(busiest.busy)};
-}
-
 std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const std::string_view> names,
                                      Fidelity fidelity, int surfels, const Progress& progress) {
   const kernels::ReferencePicture reference = scene_reference(scene);

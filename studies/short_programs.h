@@ -14,14 +14,6 @@ namespace splatscope::studies {
 
 inline constexpr std::string_view kBothMachines[] = {"geforce4-ti4400", "radeon-8500"};
 
-// Frames a second, and the unit that is busy for the largest share of the frame.
-struct Rate {
-  double fps = 0;
-  std::string bottleneck;
-  double share = 0;  // of the frame, 0 to 1
-};
-Rate rate_of(const sim::Result& timing);
-
 struct ProgramRow {
   std::string_view name;
   int slots = 0;

@@ -8,7 +8,6 @@
 #include "kernels/object_space_ewa/programs.h"
 #include "kernels/splat_programs.h"
 #include "model/isa/program.h"
-#include "studies/run.h"
 #include "traces/weight_capture.h"
 
 namespace splatscope::studies {
@@ -36,10 +35,6 @@ std::vector<unsigned char> drawn(const Frame& frame) {
   return mask;
 }
 
-VertexDataRow::Rate rate_of(const sim::Result& timing) {
-  return {timing.frames_per_second(), timing.busiest().name};
-}
-
 struct Plane {
   std::string_view name;
   int surfels_a_side;
@@ -59,9 +54,7 @@ std::string text_of(const Plane& plane, const std::vector<VertexDataRow>& rows) 
       fmt::format("{} x {} surfels\n{:<7} {:<7} {:<16} {:>4} {:>4} {:>7} {:>7} {:>7}  {:<21} {:<21} {:>6}\n",
                   plane.surfels_a_side, plane.surfels_a_side, "pass 1", "pass 2", "machine", "VS1", "VS2",
                   "bytes 1", "bytes 2", "surfel", "video memory", "AGP memory", "PSNR");
-  const auto rate = [](const VertexDataRow::Rate& r) {
-    return fmt::format("{:>6.2f} fps {}", r.fps, r.bottleneck);
-  };
+  const auto rate = [](const Rate& r) { return fmt::format("{:>6.2f} fps {}", r.fps, r.bottleneck); };
   for (const VertexDataRow& row : rows) {
     out += fmt::format("{:<7} {:<7} {:<16} {:>4} {:>4} {:>7} {:>7} {:>7}  {:<21} {:<21} {:>6.1f}\n",
                        row.programs.visibility, row.programs.ewa, row.machine, row.visibility_slots,
@@ -73,7 +66,7 @@ std::string text_of(const Plane& plane, const std::vector<VertexDataRow>& rows) 
 
 nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows) {
   auto list = nlohmann::ordered_json::array();
-  const auto rate = [](const VertexDataRow::Rate& r) {
+  const auto rate = [](const Rate& r) {
     return nlohmann::ordered_json{{"frames_per_second", r.fps}, {"bottleneck", r.bottleneck}};
   };
   for (const VertexDataRow& row : rows) {
@@ -95,9 +88,7 @@ nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows) {
 void add_table(Report& report, const Plane& plane, const std::vector<VertexDataRow>& rows) {
   using enum Report::Align;
   std::vector<std::vector<std::string>> cells;
-  const auto rate = [](const VertexDataRow::Rate& r) {
-    return fmt::format("{:.2f} ({})", r.fps, r.bottleneck);
-  };
+  const auto rate = [](const Rate& r) { return fmt::format("{:.2f} ({})", r.fps, r.bottleneck); };
   for (const VertexDataRow& row : rows) {
     cells.push_back({fmt::format("{}, {}", row.programs.visibility, row.programs.ewa), row.machine,
                      fmt::format("{} + {}", row.visibility_slots, row.ewa_slots),

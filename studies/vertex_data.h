@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/run.h"
 #include "studies/study.h"
 #include "traces/scene.h"
 
@@ -20,11 +21,7 @@ struct VertexDataRow {
   std::string machine;
   int visibility_slots = 0, ewa_slots = 0;
   std::uint32_t visibility_bytes = 0, ewa_bytes = 0;  // of a vertex
-  struct Rate {
-    double fps = 0;
-    std::string bottleneck;  // the unit that was busy for the largest share of the frame
-  };
-  Rate video, agp;  // where the vertex buffers lie
+  Rate video, agp;                                    // where the vertex buffers lie
   double psnr = 0;  // dB, against the same machine's picture by the first pair; infinite where equal
 
   int slots() const { return visibility_slots + ewa_slots; }

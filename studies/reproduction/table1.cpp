@@ -5,7 +5,6 @@
 #include "model/isa/program.h"
 #include "studies/reference_comparison.h"
 #include "studies/report/block_diagram.h"
-#include "studies/run.h"
 #include "traces/weight_capture.h"
 
 namespace splatscope::studies {
@@ -53,12 +52,12 @@ nlohmann::ordered_json json_of(const std::vector<Table1Row>& table) {
                     {"vs1", row.visibility_slots},
                     {"vs2", row.splat_slots},
                     {"fps_published", row.published_fps},
-                    {"fps_simulated", row.simulated_fps},
+                    {"fps_simulated", row.simulated.fps},
                     {"error", row.error()},
-                    {"role", row.fitted ? "fitted" : "predicted"},
+                    {"role", row.fitted() ? "fitted" : "predicted"},
                     {"fitted_parameter", row.fitted_by},
-                    {"bottleneck", row.bottleneck},
-                    {"bottleneck_busy_share", row.bottleneck_share},
+                    {"bottleneck", row.simulated.bottleneck},
+                    {"bottleneck_busy_share", row.simulated.share},
                     {"psnr_decibels", row.psnr},
                     {"cycles_per_host_second", row.cycles_per_host_second}});
   }
@@ -72,9 +71,9 @@ void add_to(Report& report, const std::vector<Table1Row>& table) {
   for (const Table1Row& row : table) {
     rows.push_back({row.algorithm, row.machine, fmt::format("{}", row.visibility_slots),
                     fmt::format("{}", row.splat_slots), fmt::format("{:.1f}", row.published_fps),
-                    fmt::format("{:.2f}", row.simulated_fps), fmt::format("{:+.1f} %", 100 * row.error()),
-                    row.fitted ? "fitted: " + row.fitted_by : "predicted",
-                    fmt::format("{} ({:.0f} % busy)", row.bottleneck, 100 * row.bottleneck_share),
+                    fmt::format("{:.2f}", row.simulated.fps), fmt::format("{:+.1f} %", 100 * row.error()),
+                    row.fitted() ? "fitted: " + row.fitted_by : "predicted",
+                    fmt::format("{} ({:.0f} % busy)", row.simulated.bottleneck, 100 * row.simulated.share),
                     fmt::format("{:.1f}", row.psnr)});
   }
   report.table(
@@ -113,8 +112,8 @@ std::string text_of(const std::vector<Table1Row>& table) {
         "{:<15} {:<16} {:>4} {:>4} {:>6.1f} fps {:>6.2f} fps {:>+6.1f}%  {:<9} {:<12} {:>3.0f} % {:>6.1f} "
         "dB\n",
         row.algorithm, row.machine, row.visibility_slots, row.splat_slots, row.published_fps,
-        row.simulated_fps, 100 * row.error(), row.fitted ? "fitted" : "predicted", row.bottleneck,
-        100 * row.bottleneck_share, row.psnr);
+        row.simulated.fps, 100 * row.error(), row.fitted() ? "fitted" : "predicted", row.simulated.bottleneck,
+        100 * row.simulated.share, row.psnr);
   }
   return out;
 }
@@ -145,14 +144,11 @@ std::vector<Table1Row> table1_rows(const Progress& progress) {
     row.algorithm = published.algorithm;
     row.machine = published.machine;
     row.published_fps = published.fps;
-    row.simulated_fps = run.timing->frames_per_second();
+    row.simulated = rate_of(*run.timing);
     row.fitted_by = fitted_parameter(machine, published.algorithm);
-    row.fitted = !row.fitted_by.empty();
     row.cycles_per_host_second = static_cast<double>(run.timing->cycles) / run.timing_seconds;
     row.psnr = psnr(run.rendered.frame, reference);
     count_slots(trace, row);
-    row.bottleneck = run.timing->busiest().name;
-    row.bottleneck_share = run.timing->share(run.timing->busiest().busy);
     row.timing = *run.timing;
     rows.push_back(std::move(row));
     ++done;

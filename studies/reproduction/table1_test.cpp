@@ -21,7 +21,6 @@ TEST(Table1, SimulatedRatesComeNearThePublishedOnes) {
     EXPECT_EQ(row.algorithm == "no-ewa" ? 21 : 78, row.splat_slots);
     // The per-pixel rows are published with two digits: 1.0 and 1.3.
     EXPECT_LT(std::abs(row.error()), row.algorithm == "ewa-per-pixel" ? 0.10 : 0.05);
-    EXPECT_EQ(row.fitted, !row.fitted_by.empty());
   }
 }
 

@@ -20,9 +20,7 @@ Table2Row row_of(const Trace& trace, const Machine& machine, Fidelity fidelity, 
   const FrameRun run = run_frame(trace, machine, fidelity, progress);
   Table2Row row;
   row.machine = machine.name;
-  row.simulated_fps = run.timing->frames_per_second();
-  row.bottleneck = run.timing->busiest().name;
-  row.bottleneck_share = run.timing->share(run.timing->busiest().busy);
+  row.simulated = rate_of(*run.timing);
   return row;
 }
 
@@ -36,11 +34,11 @@ nlohmann::ordered_json json_of(const std::vector<Table2Row>& table) {
                     {"resolution", row.resolution},
                     {"machine", row.machine},
                     {"fps_published", row.published_fps},
-                    {"fps_simulated", row.simulated_fps},
+                    {"fps_simulated", row.simulated.fps},
                     {"error", row.error()},
                     {"role", "predicted"},
-                    {"bottleneck", row.bottleneck},
-                    {"bottleneck_busy_share", row.bottleneck_share}});
+                    {"bottleneck", row.simulated.bottleneck},
+                    {"bottleneck_busy_share", row.simulated.share}});
   }
   return rows;
 }
@@ -52,8 +50,8 @@ void add_to(Report& report, const std::vector<Table2Row>& table) {
   for (const Table2Row& row : table) {
     rows.push_back({row.model, fmt::format("{}", row.points), fmt::format("{}", row.drawn),
                     fmt::format("{}", row.resolution), row.machine, fmt::format("{:.1f}", row.published_fps),
-                    fmt::format("{:.2f}", row.simulated_fps), fmt::format("{:+.1f} %", 100 * row.error()),
-                    fmt::format("{} ({:.0f} % busy)", row.bottleneck, 100 * row.bottleneck_share)});
+                    fmt::format("{:.2f}", row.simulated.fps), fmt::format("{:+.1f} %", 100 * row.error()),
+                    fmt::format("{} ({:.0f} % busy)", row.simulated.bottleneck, 100 * row.simulated.share)});
   }
   report.table(
       "EWA normalised per surfel, culled by blocks at the finest level. No parameter is fitted to these.",
@@ -83,8 +81,8 @@ std::string text_of(const std::vector<Table2Row>& table) {
   for (const Table2Row& row : table) {
     out += fmt::format(
         "{:<10} {:>7} {:>7} {:>5}  {:<15} {:>5.1f} fps {:>6.2f} fps {:>+6.1f}%  {:<8} {:>3.0f} %\n",
-        row.model, row.points, row.drawn, row.resolution, row.machine, row.published_fps, row.simulated_fps,
-        100 * row.error(), row.bottleneck, 100 * row.bottleneck_share);
+        row.model, row.points, row.drawn, row.resolution, row.machine, row.published_fps, row.simulated.fps,
+        100 * row.error(), row.simulated.bottleneck, 100 * row.simulated.share);
   }
   return out + fmt::format("median error {:.1f}%\n", 100 * median_error(table));
 }

@@ -31,11 +31,9 @@ struct Table2Row {
   int resolution = 0;     // pixels
   std::string machine;
   double published_fps = 0;
-  double simulated_fps = 0;
-  std::string bottleneck;  // the unit that was busy for the largest share of the frame
-  double bottleneck_share = 0;
+  Rate simulated;
 
-  double error() const { return simulated_fps / published_fps - 1; }
+  double error() const { return simulated.fps / published_fps - 1; }
 };
 
 // The frames of Ren 2002, Table 2: model by model, the lower resolution and the Radeon first, as printed.

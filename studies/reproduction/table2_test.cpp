@@ -24,7 +24,7 @@ TEST(Table2, ComesNearThePublishedRatesAndKeepsTheirOrder) {
     found[key(row.model, row.resolution, row.machine)] = &row;
   }
   const auto fps = [&](std::string_view model, int resolution, std::string_view machine) {
-    return found.at(key(model, resolution, machine))->simulated_fps;
+    return found.at(key(model, resolution, machine))->simulated.fps;
   };
   for (const int resolution : {256, 512}) {
     for (const Table2Model& model : table2_models()) {

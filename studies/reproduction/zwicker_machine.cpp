@@ -47,7 +47,7 @@ struct Reference {
 };
 
 VolumeFrame frame_of(const Machine& machine, const sim::Result& timing) {
-  return {machine.name, timing.seconds, timing.busiest().name, timing.share(timing.busiest().busy)};
+  return {machine.name, timing.seconds, rate_of(timing)};
 }
 
 Frame float_frame(const VolumeModel& model) {
@@ -73,7 +73,7 @@ double software_seconds(const VolumeModel& model) {
 }
 
 std::string time_of(const VolumeFrame& frame) {
-  return fmt::format("{:.2f} fps", 1 / frame.seconds);
+  return fmt::format("{:.2f} fps", frame.rate.fps);
 }
 
 std::string text_of(const VolumeRow& row) {
@@ -83,17 +83,17 @@ std::string text_of(const VolumeRow& row) {
       row.name, row.size.x, row.size.y, row.size.z, row.splats, row.flat, row.sheets,
       static_cast<double>(row.vertex_bytes) / 1e6, row.psnr_8_bits, row.psnr_float);
   for (const VolumeFrame& frame : row.frames)
-    text += fmt::format("  {:<15} {:>9}  {:<8} {:>3.0f} %\n", frame.machine, time_of(frame), frame.bottleneck,
-                        100 * frame.bottleneck_share);
+    text += fmt::format("  {:<15} {:>9}  {:<8} {:>3.0f} %\n", frame.machine, time_of(frame),
+                        frame.rate.bottleneck, 100 * frame.rate.share);
   return text + fmt::format("  software         {:>5.2f} fps  on this host\n", 1 / row.software_seconds);
 }
 
 nlohmann::ordered_json json_of(const VolumeFrame& frame) {
   return {{"machine", frame.machine},
           {"milliseconds", 1000 * frame.seconds},
-          {"fps_simulated", 1 / frame.seconds},
-          {"bottleneck", frame.bottleneck},
-          {"bottleneck_busy_share", frame.bottleneck_share}};
+          {"fps_simulated", frame.rate.fps},
+          {"bottleneck", frame.rate.bottleneck},
+          {"bottleneck_busy_share", frame.rate.share}};
 }
 
 nlohmann::ordered_json json_of(const VolumeRow& row) {
@@ -119,8 +119,8 @@ void add_table(Report& report, const std::vector<VolumeRow>& rows) {
     for (const VolumeFrame& frame : row.frames) {
       cells.push_back({row.name, row.stand_in, fmt::format("{}", row.splats), fmt::format("{}", row.sheets),
                        fmt::format("{:.1f}", row.psnr_8_bits), fmt::format("{:.1f}", row.psnr_float),
-                       frame.machine, fmt::format("{:.2f}", 1 / frame.seconds),
-                       fmt::format("{} ({:.0f} % busy)", frame.bottleneck, 100 * frame.bottleneck_share)});
+                       frame.machine, fmt::format("{:.2f}", frame.rate.fps),
+                       fmt::format("{} ({:.0f} % busy)", frame.rate.bottleneck, 100 * frame.rate.share)});
     }
   }
   report.table(
@@ -167,8 +167,8 @@ std::string text_of(const std::vector<FormatRow>& rows) {
   for (const FormatRow& row : rows) {
     text += fmt::format("              {:<9} {:>6.1f}", name_of(row.format), row.psnr);
     for (const VolumeFrame& frame : row.frames)
-      text += fmt::format("  {:>9} {:<9} {:>4.0f} %", time_of(frame), frame.bottleneck,
-                          100 * frame.bottleneck_share);
+      text += fmt::format("  {:>9} {:<9} {:>4.0f} %", time_of(frame), frame.rate.bottleneck,
+                          100 * frame.rate.share);
     text += "\n";
   }
   return text;

@@ -18,8 +18,7 @@ namespace splatscope::studies {
 struct VolumeFrame {
   std::string machine;
   double seconds = 0;  // of a frame
-  std::string bottleneck;
-  double bottleneck_share = 0;  // of the frame's time
+  Rate rate;
 };
 
 struct VolumeRow {
