@@ -149,6 +149,12 @@ void write(VertexFormat format, dvec4 value, std::byte* out) {
   }
 }
 
+const SplatProgram& named(std::span<const SplatProgram> programs, std::string_view name) {
+  const auto found = std::ranges::find(programs, name, &SplatProgram::name);
+  if (found == programs.end()) throw ModelError(fmt::format("no program of this pass is named {}", name));
+  return *found;
+}
+
 }  // namespace
 
 std::span<const SplatProgram> visibility_programs() {
@@ -159,6 +165,13 @@ std::span<const SplatProgram> ewa_programs() {
 }
 const SplatProgram& plain_program() {
   return kPlain;
+}
+
+const SplatProgram& visibility_program(std::string_view name) {
+  return named(kVisibility, name);
+}
+const SplatProgram& ewa_program(std::string_view name) {
+  return named(kEwa, name);
 }
 
 const SplatProgram& splat_program(std::string_view file) {

@@ -51,6 +51,10 @@ std::span<const SplatProgram> visibility_programs();  // first pass
 std::span<const SplatProgram> ewa_programs();         // second pass; the paper's first
 const SplatProgram& plain_program();                  // second pass without the prefilter
 
+// One of a pass by its name. Throws ModelError for another name.
+const SplatProgram& visibility_program(std::string_view name);
+const SplatProgram& ewa_program(std::string_view name);
+
 // Any of them, by its file. Throws ModelError for another file.
 const SplatProgram& splat_program(std::string_view file);
 

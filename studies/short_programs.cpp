@@ -34,9 +34,7 @@ class Drawing {
     weights_ = traces::capture_weights(scene_, machine_.numbers);
   }
   FrameRun by(std::string_view program, Fidelity fidelity) {
-    const auto programs = kernels::ewa_programs();
-    scene_.splatting.ewa_program = static_cast<int>(
-        std::ranges::find(programs, program, &kernels::SplatProgram::name) - programs.begin());
+    scene_.splatting.ewa_program = program;
     return run_frame(traces::record(scene_, weights_).trace, machine_, fidelity);
   }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "kernels/object_space_ewa/programs.h"
@@ -18,10 +17,6 @@ constexpr std::string_view kMachines[] = {"geforce4-ti4400", "radeon-8500"};
 // From most instructions to least.
 constexpr ProgramPair kPairs[] = {{"quad", "paper"},    {"corner", "paper"}, {"quad", "normal"},
                                   {"corner", "normal"}, {"corner", "plane"}, {"corner", "facing"}};
-
-int place_of(std::span<const kernels::SplatProgram> programs, std::string_view name) {
-  return static_cast<int>(std::ranges::find(programs, name, &kernels::SplatProgram::name) - programs.begin());
-}
 
 int slots_of(const kernels::SplatProgram& program) {
   const ShaderText text = kernels::shader_text(program.file);
@@ -162,11 +157,10 @@ std::vector<VertexDataRow> vertex_data_rows(const traces::Scene& scene, const Pr
     for (const ProgramPair& pair : kPairs) {
       traces::Scene changed = scene;
       traces::Splatting& splatting = changed.splatting;
-      splatting.visibility_program = place_of(kernels::visibility_programs(), pair.visibility);
-      splatting.ewa_program = place_of(kernels::ewa_programs(), pair.ewa);
-      const auto& visibility =
-          kernels::visibility_programs()[static_cast<std::size_t>(splatting.visibility_program)];
-      const auto& ewa = kernels::ewa_programs()[static_cast<std::size_t>(splatting.ewa_program)];
+      splatting.visibility_program = pair.visibility;
+      splatting.ewa_program = pair.ewa;
+      const kernels::SplatProgram& visibility = kernels::visibility_program(pair.visibility);
+      const kernels::SplatProgram& ewa = kernels::ewa_program(pair.ewa);
       const auto run = [&](traces::VertexMemory memory) {
         splatting.vertex_memory = memory;
         FrameRun done = run_frame(traces::record(changed, weights).trace, machine, Fidelity::throughput,

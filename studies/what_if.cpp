@@ -54,10 +54,6 @@ std::vector<Hardware> make_list() {
   return list;
 }
 
-int place_of(std::span<const kernels::SplatProgram> programs, std::string_view name) {
-  return static_cast<int>(std::ranges::find(programs, name, &kernels::SplatProgram::name) - programs.begin());
-}
-
 Machine machine_with(std::string_view name, const Hardware& hardware) {
   Machine machine = machine::load(std::string(name));
   machine::set(machine, fmt::format("vertex.units={}", hardware.vertex_units));
@@ -72,8 +68,8 @@ Machine machine_with(std::string_view name, const Hardware& hardware) {
 traces::Scene scene_with(traces::Scene scene, const Hardware& hardware, Algorithm algorithm) {
   scene.splatting.algorithm = algorithm;
   if (hardware.short_programs) {
-    scene.splatting.visibility_program = place_of(kernels::visibility_programs(), "corner");
-    scene.splatting.ewa_program = place_of(kernels::ewa_programs(), "facing");
+    scene.splatting.visibility_program = "corner";
+    scene.splatting.ewa_program = "facing";
   }
   if (hardware.geometry == Geometry::point_sprites) {  // its quads are the sprites' squares
     for (traces::Surfel& surfel : scene.surfels) {

@@ -109,7 +109,7 @@ TEST(Recorder, DepthMovesAlongTheRayOrTheCamerasAxis) {
   scene.camera = {{0, 10, 0}, {0, 0, 0}, {0, 0, 1}, 90, 5, 20};
   scene.frame = {21, 21};
   scene.splatting.depth_offset = 2;
-  for (const int program : {0, 1}) {
+  for (const std::string_view program : {"quad", "corner"}) {
     scene.splatting.visibility_program = program;
     scene.splatting.depth_offset_scheme = DepthOffsetScheme::viewing_ray;
     const Trace along_ray = record(scene, NumberFormats{}).trace;

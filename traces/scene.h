@@ -69,8 +69,8 @@ struct Splatting {
   VertexMemory vertex_memory = VertexMemory::automatic;
   double video_megabytes = 0;  // what vertex and index buffers may take of the card's memory
   Faces faces = Faces::both;   // of a Scene, never automatic: surfels that face away may be dropped
-  int visibility_program = 0;  // places in kernels::visibility_programs() and ewa_programs()
-  int ewa_program = 0;
+  std::string_view visibility_program = "quad";  // names in kernels::visibility_programs() and ewa_programs()
+  std::string_view ewa_program = "paper";
 };
 
 // How the weights of per-surfel normalisation are captured (Ren 2002, section 7.2).

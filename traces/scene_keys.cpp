@@ -26,6 +26,10 @@ std::vector<std::string_view> names_of(std::span<const kernels::SplatProgram> pr
   return names;
 }
 
+std::string_view name_of(std::span<const kernels::SplatProgram> programs, int choice) {
+  return programs[static_cast<std::size_t>(choice)].name;
+}
+
 // The default picture is Fig. 11 of Ren 2002: a plane of 64k surfels that recedes toward the horizon. The
 // paper gives neither its camera nor the size of its squares: these are a reconstruction. The camera's
 // defaults are the plane's; other surfels are framed (framing.h).
@@ -123,11 +127,13 @@ const std::array kKeys = {
              "which surfels are drawn; front: those that face the eye; auto: both of the plane, else front",
              ChoiceValue{[](S& s, int i) { s.splatting.faces = Faces(i); }, {"auto", "both", "front"}, 0}},
     SceneKey{"splatting", "visibility_program", "", "program of the first pass, with its vertices",
-             ChoiceValue{[](S& s, int i) { s.splatting.visibility_program = i; },
+             ChoiceValue{[](S& s, int i) {
+                           s.splatting.visibility_program = name_of(kernels::visibility_programs(), i);
+                         },
                          names_of(kernels::visibility_programs()), 0}},
-    SceneKey{
-        "splatting", "ewa_program", "", "program of the second pass where it filters by EWA",
-        ChoiceValue{[](S& s, int i) { s.splatting.ewa_program = i; }, names_of(kernels::ewa_programs()), 0}},
+    SceneKey{"splatting", "ewa_program", "", "program of the second pass where it filters by EWA",
+             ChoiceValue{[](S& s, int i) { s.splatting.ewa_program = name_of(kernels::ewa_programs(), i); },
+                         names_of(kernels::ewa_programs()), 0}},
 
     SceneKey{
         "hierarchy", "culling", "",

@@ -172,16 +172,11 @@ Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::ve
     return trace;
   }
 
-  const auto at = [](auto programs, int place) -> decltype(auto) {
-    return programs[static_cast<std::size_t>(place)];
-  };
-  RecordedPass visibility =
-      make_pass(at(kernels::visibility_programs(), settings.visibility_program), 0, settings);
+  RecordedPass visibility = make_pass(kernels::visibility_program(settings.visibility_program), 0, settings);
   visibility.draw.state.color_write = false;
 
-  RecordedPass splats =
-      make_pass(pass.prefilter ? at(kernels::ewa_programs(), settings.ewa_program) : kernels::plain_program(),
-                1, settings);
+  RecordedPass splats = make_pass(
+      pass.prefilter ? kernels::ewa_program(settings.ewa_program) : kernels::plain_program(), 1, settings);
   splats.draw.pixel_program = 2;
   splats.draw.texture = 0;
   DrawState& state = splats.draw.state;

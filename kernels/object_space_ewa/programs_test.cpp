@@ -69,6 +69,8 @@ TEST(Programs, slots_of_the_short_ones) {
 
 TEST(Programs, an_unknown_name_is_an_error) {
   EXPECT_THROW(shader_text("splat.vs"), ModelError);
+  EXPECT_THROW(ewa_program("quad"), ModelError);
+  EXPECT_THROW(visibility_program("paper"), ModelError);
 }
 
 std::vector<SplatProgram> all_programs() {

@@ -41,10 +41,6 @@ inline isa::Program load_program(std::string_view file) {
 // Names the cases of a test over programs.
 inline constexpr auto program_name = [](const auto& info) { return std::string(info.param.name); };
 
-inline const SplatProgram& ewa_program(std::string_view name) {
-  return *std::ranges::find(ewa_programs(), name, &SplatProgram::name);
-}
-
 // Surfels whose vertices have `fields` through `program`. No format but binary32 rounds anything here.
 inline std::vector<QuadOutput> run_quads(const isa::Program& program, std::span<const VertexField> fields,
                                          Arithmetic arithmetic, std::span<const Vec4> constants,

@@ -119,7 +119,7 @@ TEST(BlockCulling, NeverChangesThePictureOfOtherSettings) {
     s.splatting.cutoff = 3;
     s.splatting.sigma = 2;
   });
-  for (int program = 1; program <= 3; ++program) {
+  for (const std::string_view program : {"normal", "plane", "facing"}) {
     expect_same_pictures("torus-knot", "another vertex program",
                          [&](Scene& s) { s.splatting.ewa_program = program; });
   }
