@@ -127,7 +127,7 @@ Plot units_plot(const std::vector<WhatIfRow>& rows) {
       std::vector<std::pair<double, double>> points;
       for (const WhatIfRow& row : rows) {
         const Hardware& h = row.hardware;
-        if (row.machine == machine && h.short_programs == short_programs && h.frame == "unorm8" &&
+        if (row.machine == machine && h.short_programs == short_programs && h.frame == FrameFormat::unorm8 &&
             !h.divider && h.geometry == Geometry::four_vertices) {
           points.emplace_back(h.vertex_units, row.cells[2].rate.fps);
         }

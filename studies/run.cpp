@@ -44,6 +44,15 @@ std::string_view name(Fidelity fidelity) {
   throw ModelError("a fidelity without a name");
 }
 
+Machine with_frame(Machine machine, FrameFormat format) {
+  machine.numbers.frame = format;
+  if (format != FrameFormat::unorm8) {
+    machine.numbers.color = ColorFormat::float32;
+    machine.numbers.combiner = CombinerFormat::float32;
+  }
+  return machine;
+}
+
 Opened open_input(const std::string& scene_or_trace, const Progress& progress) {
   if (std::filesystem::path(scene_or_trace).extension() == ".trace")
     return traces::read_trace(scene_or_trace);

@@ -29,6 +29,10 @@ std::string_view name(Fidelity fidelity);
 
 using OnFrame = std::function<void(const Frame&)>;  // given each frame of a trace, in order
 
+// The machine with another frame buffer. Beside one of more than 8 bits a channel, interpolated colours and
+// the results of the pixel unit are in binary32: they would round each contribution to 8 bits.
+Machine with_frame(Machine machine, FrameFormat format);
+
 // What is run: a trace, and what the host knows about it where it was recorded from a scene.
 struct Input {
   std::string name;

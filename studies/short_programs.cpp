@@ -16,15 +16,6 @@ bool is_live(const isa::Program& program) {
   return std::ranges::none_of(isa::analyze(program).instructions, &isa::InstructionAnalysis::dead);
 }
 
-// The machine with colours, pixel unit and frame in binary32: what the program itself does to the picture.
-Machine in_float(std::string_view name) {
-  Machine machine = machine::load(std::string(name));
-  machine.numbers.color = ColorFormat::float32;
-  machine.numbers.combiner = CombinerFormat::float32;
-  machine.numbers.frame = FrameFormat::float32;
-  return machine;
-}
-
 // A scene by each program on one machine. Its weights are captured once: without prefilter, they are the same
 // for all.
 class Drawing {
@@ -70,8 +61,10 @@ std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const
   const kernels::ReferencePicture reference = scene_reference(scene);
   traces::Scene one_weight = scene;
   one_weight.capture.corner_weights = false;
-  const auto apart = psnr_by_program({scene, in_float(kBothMachines[0])}, names);
-  const auto apart_one = psnr_by_program({one_weight, in_float(kBothMachines[0])}, names);
+  // In binary32: what the program itself does to the picture.
+  const Machine in_float = with_frame(machine::load(kBothMachines[0]), FrameFormat::float32);
+  const auto apart = psnr_by_program({scene, in_float}, names);
+  const auto apart_one = psnr_by_program({one_weight, in_float}, names);
   std::vector<ProgramRow> rows;
   std::map<std::string_view, Drawing> drawings;
   for (const std::string_view name : kBothMachines) {

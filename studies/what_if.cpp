@@ -25,9 +25,9 @@ std::vector<Hardware> make_list() {
                     .cost = fmt::format("{:+} vertex units", units - 2),
                     .vertex_units = units});
   }
-  list.push_back({.name = "unorm16 frame", .cost = "8 bytes a pixel for 4", .frame = "unorm16"});
-  list.push_back({.name = "half frame", .cost = "8 bytes a pixel for 4", .frame = "half"});
-  list.push_back({.name = "float frame", .cost = "16 bytes a pixel for 4", .frame = "float32"});
+  list.push_back({.name = "unorm16 frame", .cost = "8 bytes a pixel for 4", .frame = FrameFormat::unorm16});
+  list.push_back({.name = "half frame", .cost = "8 bytes a pixel for 4", .frame = FrameFormat::half});
+  list.push_back({.name = "float frame", .cost = "16 bytes a pixel for 4", .frame = FrameFormat::float32});
   list.push_back({.name = "divider", .cost = "4 dividers; the frame once more", .divider = true});
   list.push_back(
       {.name = "4 corners a vertex", .cost = "a loop over the corners", .geometry = Geometry::four_corners});
@@ -43,13 +43,13 @@ std::vector<Hardware> make_list() {
   list.push_back({.name = "short, divider, half",
                   .cost = "dividers, 8 bytes a pixel",
                   .short_programs = true,
-                  .frame = "half",
+                  .frame = FrameFormat::half,
                   .divider = true});
   list.push_back({.name = "the same, 4 units",
                   .cost = "+2 vertex units more",
                   .short_programs = true,
                   .vertex_units = 4,
-                  .frame = "half",
+                  .frame = FrameFormat::half,
                   .divider = true});
   return list;
 }
@@ -57,12 +57,7 @@ std::vector<Hardware> make_list() {
 Machine machine_with(std::string_view name, const Hardware& hardware) {
   Machine machine = machine::load(std::string(name));
   machine::set(machine, fmt::format("vertex.units={}", hardware.vertex_units));
-  if (hardware.frame != "unorm8") {
-    machine::set(machine, fmt::format("numbers.frame=\"{}\"", hardware.frame));
-    machine.numbers.color = ColorFormat::float32;
-    machine.numbers.combiner = CombinerFormat::float32;
-  }
-  return machine;
+  return with_frame(std::move(machine), hardware.frame);
 }
 
 traces::Scene scene_with(traces::Scene scene, const Hardware& hardware, Algorithm algorithm) {
@@ -147,9 +142,9 @@ class Drawings {
   }
 
  private:
-  using Key = std::tuple<bool, std::string_view, bool, Algorithm>;
+  using Key = std::tuple<bool, FrameFormat, bool, Algorithm>;
 
-  const traces::CapturedWeights& weights_of(std::string_view frame, const NumberFormats& numbers) {
+  const traces::CapturedWeights& weights_of(FrameFormat frame, const NumberFormats& numbers) {
     const auto found = weights_.find(frame);
     if (found != weights_.end()) return found->second;
     return weights_.emplace(frame, traces::capture_weights(scene_, numbers)).first->second;
@@ -159,7 +154,7 @@ class Drawings {
   std::string machine_;
   kernels::ReferencePicture reference_;
   std::map<Key, Drawing> drawings_;
-  std::map<std::string_view, traces::CapturedWeights> weights_;
+  std::map<FrameFormat, traces::CapturedWeights> weights_;
 };
 
 WhatIfRow::Cell cell_of(const Drawings::Drawing& drawing, const Hardware& hardware, const Machine& machine) {

@@ -25,9 +25,8 @@ struct Hardware {
   std::string cost;             // what it takes, for people
   bool short_programs = false;  // passes by "corner" and "facing"; else by the paper's programs
   int vertex_units = 2;
-  std::string_view frame =
-      "unorm8";          // numbers.frame; if it is another, colours are not rounded to 8 bits either
-  bool divider = false;  // four pixels a clock at the end of the frame
+  FrameFormat frame = FrameFormat::unorm8;  // by with_frame
+  bool divider = false;                     // four pixels a clock at the end of the frame
   Geometry geometry = Geometry::four_vertices;
 };
 

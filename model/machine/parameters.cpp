@@ -236,4 +236,8 @@ std::span<const Parameter> parameters() {
   return all;
 }
 
+std::string_view name(FrameFormat format) {
+  return kFrameFormats[static_cast<std::size_t>(format)];
+}
+
 }  // namespace splatscope::machine

@@ -37,4 +37,6 @@ struct Parameter {
 
 std::span<const Parameter> parameters();
 
+std::string_view name(FrameFormat format);  // as numbers.frame has it
+
 }  // namespace splatscope::machine

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kernels/reference/volume/fast_volume.h"
+#include "model/machine/parameters.h"
 #include "studies/measure.h"
 #include "traces/volume_trace.h"
 
@@ -14,18 +15,8 @@ namespace {
 
 constexpr int kFrame = 512;
 constexpr std::string_view kMachines[] = {"radeon-8500", "geforce4-ti4400"};
-constexpr std::pair<FrameFormat, std::string_view> kFormats[] = {{FrameFormat::unorm8, "unorm8"},
-                                                                 {FrameFormat::unorm10, "unorm10"},
-                                                                 {FrameFormat::half, "half"},
-                                                                 {FrameFormat::unorm16, "unorm16"},
-                                                                 {FrameFormat::float32, "float32"}};
-
-std::string_view name_of(FrameFormat format) {
-  for (const auto& [listed, name] : kFormats) {
-    if (listed == format) return name;
-  }
-  return "";
-}
+constexpr FrameFormat kFormats[] = {FrameFormat::unorm8, FrameFormat::unorm10, FrameFormat::half,
+                                    FrameFormat::unorm16, FrameFormat::float32};
 
 kernels::VolumeSettings software_settings() {
   const traces::VolumeTraceSettings machine;
@@ -165,7 +156,7 @@ std::string text_of(const std::vector<FormatRow>& rows) {
   for (const std::string_view machine : kMachines) text += fmt::format("  {:>26}", machine);
   text += "\n";
   for (const FormatRow& row : rows) {
-    text += fmt::format("              {:<9} {:>6.1f}", name_of(row.format), row.psnr);
+    text += fmt::format("              {:<9} {:>6.1f}", machine::name(row.format), row.psnr);
     for (const VolumeFrame& frame : row.frames)
       text += fmt::format("  {:>9} {:<9} {:>4.0f} %", time_of(frame), frame.rate.bottleneck,
                           100 * frame.rate.share);
@@ -179,7 +170,8 @@ nlohmann::ordered_json json_of(const std::vector<FormatRow>& rows) {
   for (const FormatRow& row : rows) {
     auto frames = nlohmann::ordered_json::array();
     for (const VolumeFrame& frame : row.frames) frames.push_back(json_of(frame));
-    list.push_back({{"format", name_of(row.format)}, {"psnr_decibels", row.psnr}, {"machines", frames}});
+    list.push_back(
+        {{"format", machine::name(row.format)}, {"psnr_decibels", row.psnr}, {"machines", frames}});
   }
   return list;
 }
@@ -216,15 +208,10 @@ std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity, 
   const Reference reference(model);
   const Trace trace = traces::volume_trace(model.view, model.splats, {}).trace;
   std::vector<FormatRow> rows;
-  for (const auto& [format, name] : kFormats) {
+  for (const FrameFormat format : kFormats) {
     FormatRow row{format, 0, {}};
     for (const std::string_view machine_name : kMachines) {
-      Machine machine = machine::load(machine_name);
-      machine.numbers.frame = format;
-      if (format != FrameFormat::unorm8) {
-        machine.numbers.color = ColorFormat::float32;
-        machine.numbers.combiner = CombinerFormat::float32;
-      }
+      const Machine machine = with_frame(machine::load(machine_name), format);
       const FrameRun run = run_frame(trace, machine, fidelity);
       row.frames.push_back(frame_of(machine, *run.timing));
       row.psnr = reference.psnr_of(run.rendered.frame);
