@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <sstream>
 
@@ -12,6 +11,7 @@
 #include "model/output/blend_factor.h"
 #include "model/render.h"
 #include "model/vertex/vertex_fetch.h"
+#include "studies/shader_case.h"
 #include "studies/shader_debugger.h"
 
 namespace splatscope::studies {
@@ -131,13 +131,6 @@ std::string stored_text(const Vec4& color, FrameFormat format) {
 
 std::string double_text(const PixelStep::Color& color) {
   return fmt::format("{:.8f} {:.8f} {:.8f} {:.8f}", color[0], color[1], color[2], color[3]);
-}
-
-nlohmann::ordered_json hex_of(const Vec4& value) {
-  auto words = nlohmann::ordered_json::array();
-  for (const float component : value)
-    words.push_back(fmt::format("{:08x}", std::bit_cast<std::uint32_t>(component)));
-  return words;
 }
 
 const Draw& draw_of(const Trace& trace, std::uint32_t number) {

@@ -17,7 +17,6 @@
 namespace splatscope::studies {
 namespace {
 
-constexpr std::string_view kMachines[] = {"geforce4-ti4400", "radeon-8500"};
 constexpr std::string_view kTable1[] = {"checkerboard-no-ewa", "checkerboard-ewa-per-pixel",
                                         "checkerboard-ewa-per-surfel"};
 
@@ -91,21 +90,21 @@ void study_saving(Findings& findings, const Progress& progress) {
   Saving cycle, referee;
   std::size_t done = 0;
   for (const std::string_view ready : kTable1) {
-    for (const std::string_view name : kMachines) {
+    for (const std::string_view name : kBothMachines) {
       const Machine machine = machine::load(name);
       const Trace trace = traces::record(traces::load_scene(ready), machine.numbers).trace;
       add_saving(trace, machine, sim::Scheduler::skip_ahead, kFidelityRepetitions, cycle);
       // One frame is enough: it takes a minute.
-      if (ready == kTable1[2] && name == kMachines[0])
+      if (ready == kTable1[2] && name == kBothMachines[0])
         add_saving(trace, machine, sim::Scheduler::referee, kFidelityRepetitions, referee);
-      tell(progress, ++done, std::size(kTable1) * std::size(kMachines));
+      tell(progress, ++done, std::size(kTable1) * std::size(kBothMachines));
     }
   }
   findings.say(
       fmt::format("leaving out the units that no draw uses saves of the time of the timing\n"
                   "cycle       {:>10.1f} %  Table 1\n"
                   "referee     {:>10.1f} %  {} on {}\n",
-                  100 * cycle.share(), 100 * referee.share(), kTable1[2], kMachines[0]));
+                  100 * cycle.share(), 100 * referee.share(), kTable1[2], kBothMachines[0]));
   findings.result("units_left_out", {{"cycle_saving", cycle.share()}, {"referee_saving", referee.share()}});
 }
 
@@ -185,7 +184,7 @@ std::vector<FidelityFrame> figure_frames() {
 std::vector<FidelityRow> fidelity_rows(const FidelityFrame& frame, int repetitions,
                                        const Progress& progress) {
   std::vector<FidelityRow> rows;
-  for (const std::string_view machine_name : kMachines) {
+  for (const std::string_view machine_name : kBothMachines) {
     const Machine machine = machine::load(machine_name);
     const Trace trace = frame.record(machine);
     const std::size_t first = rows.size();
@@ -193,7 +192,7 @@ std::vector<FidelityRow> fidelity_rows(const FidelityFrame& frame, int repetitio
       const int runs = fidelity == Fidelity::referee ? 1 : repetitions;
       rows.push_back(row_of(frame, machine_name, fidelity, cost_of(trace, machine, fidelity, runs)));
       if (fidelity == Fidelity::sampled) add_seeds(trace, machine, rows.back());
-      tell(progress, rows.size(), std::size(kMachines) * std::size(kFidelityLadder));
+      tell(progress, rows.size(), std::size(kBothMachines) * std::size(kFidelityLadder));
     }
     const FidelityRow referee = rows.back();
     for (std::size_t i = first; i < rows.size(); ++i) compare_with(referee, rows[i]);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <stdexcept>
 
 #include "traces/output_files.h"
@@ -53,6 +54,17 @@ std::string script_of(const Plot& plot) {
 }
 
 }  // namespace
+
+Plot::Series ellipse(const std::string& name, const glm::dmat2& axes) {
+  Plot::Series series{name, {}, {}};
+  for (int degree = 0; degree <= 360; degree += 5) {
+    const double angle = degree * std::numbers::pi / 180;
+    const glm::dvec2 point = axes * glm::dvec2(std::cos(angle), std::sin(angle));
+    series.x.push_back(point.x);
+    series.y.push_back(point.y);
+  }
+  return series;
+}
 
 std::string svg_of(const Plot& plot) {
   const traces::OutputFile script(std::filesystem::temp_directory_path() / "splatscope.gnuplot");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <glm/mat2x2.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Plot {
   };
   std::vector<Series> series = {};
 };
+
+// The image of the unit circle: one standard deviation of the Gaussian whose axes these are.
+Plot::Series ellipse(const std::string& name, const glm::dmat2& axes);
 
 // The plot as the text of an SVG file. Throws std::runtime_error where gnuplot fails or is missing.
 std::string svg_of(const Plot& plot);

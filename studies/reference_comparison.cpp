@@ -76,15 +76,6 @@ std::size_t pixel_index(const kernels::SplatSums& reference, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
-bool is_inside(const kernels::ScreenSpacePicture& reference, int x, int y) {
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      if (!std::isfinite(reference.depth[pixel_index(reference, x + dx, y + dy)])) return false;
-    }
-  }
-  return true;
-}
-
 // Whether the depth image ends or jumps between two pixels beside each other.
 bool jumps(const kernels::ScreenSpacePicture& reference, double a, double b) {
   return !(std::abs(a - b) <= 2 * reference.depth_offset);  // also where one or both are infinite
@@ -177,13 +168,23 @@ double psnr(const Frame& frame, const kernels::SplatSums& reference) {
   return surface_difference(frame, reference, {}).psnr;
 }
 
+bool is_inside(std::span<const double> depth, int width, int height, int x, int y) {
+  if (x < 1 || y < 1 || x + 1 >= width || y + 1 >= height) return false;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (!std::isfinite(depth[static_cast<std::size_t>((y + dy) * width + x + dx)])) return false;
+    }
+  }
+  return true;
+}
+
 Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference,
                    const std::function<Frame()>& unrounded) {
   Comparison out = surface_difference(frame, reference, off_edges(reference));
   std::vector<std::size_t> black;
-  for (int y = 1; y + 1 < reference.height; ++y) {
-    for (int x = 1; x + 1 < reference.width; ++x) {
-      if (!is_inside(reference, x, y)) continue;
+  for (int y = 0; y < reference.height; ++y) {
+    for (int x = 0; x < reference.width; ++x) {
+      if (!is_inside(reference.depth, reference.width, reference.height, x, y)) continue;
       ++out.inside_pixels;
       const std::size_t pixel = pixel_index(reference, x, y);
       const glm::dvec3& expected = reference.normalized[pixel];

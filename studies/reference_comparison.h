@@ -72,6 +72,10 @@ struct Comparison {
   std::size_t holes = 0;
   std::size_t rounded_to_black = 0;
 };
+// Whether the rays of a pixel of a depth image and of the eight about it all meet something: finite depths.
+// Not where one of them lies beyond the border.
+bool is_inside(std::span<const double> depth, int width, int height, int x, int y);
+
 // `unrounded` gives the frame as a frame buffer of floats holds it, and is asked only where there may be
 // holes. Without it every pixel left black is a hole.
 Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference,

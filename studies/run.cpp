@@ -7,6 +7,7 @@
 #include <future>
 
 #include "model/error.h"
+#include "model/isa/program.h"
 #include "sim/fidelity/sampled.h"
 #include "sim/fidelity/throughput.h"
 #include "studies/image_io.h"
@@ -96,6 +97,10 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
     default:
       return sim::simulate(trace, work, machine, sim::Scheduler::skip_ahead, progress, options.observers);
   }
+}
+
+int slots_of(const ShaderText& program) {
+  return isa::slot_count(isa::load(program.text, program.name));
 }
 
 Rate rate_of(const sim::Result& timing) {

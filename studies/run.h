@@ -20,6 +20,8 @@
 // The frames of a scene or a trace on one machine.
 namespace splatscope::studies {
 
+inline constexpr std::string_view kBothMachines[] = {"geforce4-ti4400", "radeon-8500"};
+
 enum class Fidelity { functional, throughput, sampled, cycle, referee };
 
 // "functional", "throughput", "sampled", "cycle", "referee". Throws UserError (file "--fidelity") for another
@@ -89,6 +91,9 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
 // Does now, on any thread, what else the first frame and its picture wait for: oneTBB's threads, and a fifth
 // of a second of the loader for OpenImageIO. Throws std::runtime_error where that cannot be loaded.
 void load_libraries();
+
+// Instruction slots of a program, which is assembled for them.
+int slots_of(const ShaderText& program);
 
 // Frames a second, and the unit that is busy for the largest share of the frame.
 struct Rate {

@@ -192,8 +192,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   results["frames"] = frames_json(run, frame_ends(input.trace).size());
   results["programs"] = Json::array();
   for (const ShaderText& program : input.trace.programs) {
-    results["programs"].push_back(
-        {{"name", program.name}, {"slots", isa::slot_count(isa::load(program.text, program.name))}});
+    results["programs"].push_back({{"name", program.name}, {"slots", slots_of(program)}});
   }
   results["units"] = run.timing ? units_json(*run.timing) : Json::array();
   results["units_left_out"] = run.timing ? left_out_json(*run.timing) : Json::array();

@@ -25,13 +25,6 @@ constexpr std::string_view kProgramName = "program", kCaseName = "case";
 
 constexpr std::size_t kLongestLine = std::size_t{16} << 20;  // bytes
 
-ordered_json hex_of(const Vec4& value) {
-  ordered_json hex = ordered_json::array();
-  for (const float component : value)
-    hex.push_back(fmt::format("{:08x}", std::bit_cast<std::uint32_t>(component)));
-  return hex;
-}
-
 int output_place(isa::RegisterFile file, int index) {
   switch (file) {
     case isa::RegisterFile::position_out:

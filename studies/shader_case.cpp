@@ -39,6 +39,13 @@ ordered_json parse_case(std::string_view text, std::string_view file, int line) 
   return object;
 }
 
+ordered_json hex_of(const Vec4& value) {
+  ordered_json words = ordered_json::array();
+  for (const float component : value)
+    words.push_back(fmt::format("{:08x}", std::bit_cast<std::uint32_t>(component)));
+  return words;
+}
+
 bool is_case_id(const ordered_json& id) {
   return id.is_string() || id.is_number();
 }

@@ -21,6 +21,9 @@ nlohmann::ordered_json parse_case(std::string_view text, std::string_view file, 
 // Whether the "id" of a case is text or a number, as it has to be.
 bool is_case_id(const nlohmann::ordered_json& id);
 
+// A value as a case gives it: the binary32 bits of each component in hex.
+nlohmann::ordered_json hex_of(const Vec4& value);
+
 // One case. Values are binary32 bits in hex; what is not given is 0 (vertex inputs: 0, 0, 0, 1).
 class ShaderCase {
  public:

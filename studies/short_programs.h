@@ -12,8 +12,6 @@
 // What a shorter EWA program is worth: every one of kernels::ewa_programs() beside the paper's.
 namespace splatscope::studies {
 
-inline constexpr std::string_view kBothMachines[] = {"geforce4-ti4400", "radeon-8500"};
-
 struct ProgramRow {
   std::string_view name;
   int slots = 0;

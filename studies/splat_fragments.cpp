@@ -154,14 +154,7 @@ VisibleSurface visible_surface(const traces::Scene& scene) {
 }
 
 bool is_inside(const VisibleSurface& surface, int x, int y) {
-  if (x < 1 || y < 1 || x + 1 >= surface.width || y + 1 >= surface.height) return false;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      if (!std::isfinite(surface.depth[static_cast<std::size_t>((y + dy) * surface.width + x + dx)]))
-        return false;
-    }
-  }
-  return true;
+  return is_inside(surface.depth, surface.width, surface.height, x, y);
 }
 
 void for_each_fragment(const traces::Scene& scene, const Trace& trace, const Rendered& rendered,

@@ -6,22 +6,14 @@
 
 #include "kernels/object_space_ewa/programs.h"
 #include "kernels/splat_programs.h"
-#include "model/isa/program.h"
 #include "traces/weight_capture.h"
 
 namespace splatscope::studies {
 namespace {
 
-constexpr std::string_view kMachines[] = {"geforce4-ti4400", "radeon-8500"};
-
 // From most instructions to least.
 constexpr ProgramPair kPairs[] = {{"quad", "paper"},    {"corner", "paper"}, {"quad", "normal"},
                                   {"corner", "normal"}, {"corner", "plane"}, {"corner", "facing"}};
-
-int slots_of(const kernels::SplatProgram& program) {
-  const ShaderText text = kernels::shader_text(program.file);
-  return isa::slot_count(isa::load(text.text, text.name));
-}
 
 // Every pixel that the first pair drew on.
 std::vector<unsigned char> drawn(const Frame& frame) {
@@ -116,7 +108,7 @@ Plot slots_plot(const std::vector<VertexDataRow>& rows) {
             .x_label = "bytes read for a surfel in a frame",
             .y_label = "instruction slots of both passes"};
   for (const VertexDataRow& row : rows) {
-    if (row.machine != kMachines[0]) continue;
+    if (row.machine != kBothMachines[0]) continue;
     plot.series.push_back(points(fmt::format("{}, {}", row.programs.visibility, row.programs.ewa)));
     plot.series.back().x = {static_cast<double>(row.surfel_bytes())};
     plot.series.back().y = {static_cast<double>(row.slots())};
@@ -128,7 +120,7 @@ Plot rate_plot(const std::vector<VertexDataRow>& rows) {
   Plot plot{.title = "Frame rate against instructions",
             .x_label = "instruction slots of both passes",
             .y_label = "frames a second"};
-  for (const std::string_view machine : kMachines) {
+  for (const std::string_view machine : kBothMachines) {
     Plot::Series video = points(fmt::format("{}, video memory", machine));
     Plot::Series agp = points(fmt::format("{}, AGP memory", machine));
     for (const VertexDataRow& row : rows) {
@@ -147,9 +139,9 @@ Plot rate_plot(const std::vector<VertexDataRow>& rows) {
 
 std::vector<VertexDataRow> vertex_data_rows(const traces::Scene& scene, const Progress& progress) {
   std::vector<VertexDataRow> rows;
-  constexpr double kRuns = 2 * std::size(kMachines) * std::size(kPairs);
+  constexpr double kRuns = 2 * std::size(kBothMachines) * std::size(kPairs);
   double runs = 0;
-  for (const std::string_view name : kMachines) {
+  for (const std::string_view name : kBothMachines) {
     const Machine machine = machine::load(std::string(name));
     // Captured without prefilter: the same whatever the programs.
     const traces::CapturedWeights weights = traces::capture_weights(scene, machine.numbers);
@@ -172,8 +164,8 @@ std::vector<VertexDataRow> vertex_data_rows(const traces::Scene& scene, const Pr
       if (!first) first = video.rendered.frame;
       rows.push_back({.programs = pair,
                       .machine = std::string(name),
-                      .visibility_slots = slots_of(visibility),
-                      .ewa_slots = slots_of(ewa),
+                      .visibility_slots = slots_of(kernels::shader_text(visibility.file)),
+                      .ewa_slots = slots_of(kernels::shader_text(ewa.file)),
                       .visibility_bytes = kernels::vertex_bytes(visibility.fields),
                       .ewa_bytes = kernels::vertex_bytes(ewa.fields),
                       .video = rate_of(*video.timing),

@@ -29,16 +29,6 @@ void add_point(const glm::dvec2& u, Plot::Series& series) {
   series.y.push_back(u.y);
 }
 
-// The image of the unit circle: one standard deviation of the Gaussian whose axes these are.
-Plot::Series ellipse(const std::string& name, const glm::dmat2& axes) {
-  Plot::Series series{name, {}, {}};
-  for (int degree = 0; degree <= 360; degree += 5) {
-    const double angle = degree * std::numbers::pi / 180;
-    add_point(axes * glm::dvec2(std::cos(angle), std::sin(angle)), series);
-  }
-  return series;
-}
-
 Plot::Series arrow(const std::string& name, const glm::dvec2& to) {
   return {name, {0, to.x}, {0, to.y}};
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "model/isa/program.h"
 #include "studies/reference_comparison.h"
 #include "studies/report/block_diagram.h"
 #include "traces/weight_capture.h"
@@ -30,18 +29,14 @@ std::string fitted_parameter(const Machine& machine, std::string_view algorithm)
   return {};
 }
 
-int slots_of(const Trace& trace, std::size_t program) {
-  return isa::slot_count(isa::load(trace.programs[program].text, trace.programs[program].name));
-}
-
 // The two vertex programs of a recorded trace, in the order of its passes.
 void count_slots(const Trace& trace, Table1Row& row) {
   std::vector<std::uint32_t> programs;
   for (const Command& command : trace.commands) {
     if (const auto* draw = std::get_if<Draw>(&command)) programs.push_back(draw->vertex_program);
   }
-  row.visibility_slots = slots_of(trace, programs.front());
-  row.splat_slots = slots_of(trace, programs.back());
+  row.visibility_slots = slots_of(trace.programs[programs.front()]);
+  row.splat_slots = slots_of(trace.programs[programs.back()]);
 }
 
 nlohmann::ordered_json json_of(const std::vector<Table1Row>& table) {

@@ -20,17 +20,11 @@ nlohmann::ordered_json json_of(const Radii& radii) {
 }
 
 // The ellipse x^T V^-1 x = 1.
-Plot::Series ellipse(std::string name, const glm::dmat2& variance) {
-  Plot::Series series{std::move(name), {}, {}};
+Plot::Series ellipse_of(const std::string& name, const glm::dmat2& variance) {
   // A root of V: columns of its Cholesky factor.
   const double a = std::sqrt(variance[0][0]), b = variance[0][1] / a;
   const double c = std::sqrt(std::max(0.0, variance[1][1] - b * b));
-  for (int degree = 0; degree <= 360; degree += 5) {
-    const double angle = degree * std::numbers::pi / 180;
-    series.x.push_back(a * std::cos(angle));
-    series.y.push_back(b * std::cos(angle) + c * std::sin(angle));
-  }
-  return series;
+  return ellipse(name, glm::dmat2(a, b, 0, c));
 }
 
 struct FilterCase {
@@ -141,8 +135,9 @@ void reproduce_zwicker_figure13(Findings& findings, const Progress& progress) {
               .x_label = "pixels",
               .y_label = "pixels",
               .same_scale = true};
-    plot.series = {ellipse("reconstruction kernel", kernel), ellipse("low-pass filter", glm::dmat2(1.0)),
-                   ellipse("EWA resampling filter", ewa), ellipse("Swan: scaled uniformly", swan)};
+    plot.series = {ellipse_of("reconstruction kernel", kernel),
+                   ellipse_of("low-pass filter", glm::dmat2(1.0)), ellipse_of("EWA resampling filter", ewa),
+                   ellipse_of("Swan: scaled uniformly", swan)};
     findings.plot(fmt::format("zwicker-fig13-{}", filter.name), plot);
     json.push_back({{"case", filter.name},
                     {"reconstruction", json_of(radii[0])},
