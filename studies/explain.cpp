@@ -22,7 +22,7 @@ namespace {
 class PixelHistory {
  public:
   PixelHistory(const Trace& trace, const NumberFormats& formats, std::uint32_t x, std::uint32_t y)
-      : trace_(trace), pixel_(std::size_t{y} * trace.width + x) {
+      : trace_(trace), pixel_(std::size_t{y} * trace.width + x), held_(std::size_t{1} + trace.surfaces) {
     options_.formats = formats;
     options_.record = Record::nothing;
     probe_ = options_;
@@ -32,14 +32,13 @@ class PixelHistory {
   }
 
   void add(PixelStep step, Command command) {
-    if (!steps.empty()) {
-      step.before = steps.back().after;
-      step.before_in_double = steps.back().after_in_double;
-    }
-    step.after_in_double = in_double(step, command);
+    Held& held = held_[step.target];
+    step.before = held.stored;
+    step.before_in_double = held.in_double;
+    step.after_in_double = held.in_double = in_double(step, command);
     done_.push_back(std::move(command));
-    const Frame frame = render_view(trace_, done_, options_);
-    step.after = frame.color(pixel_);
+    const Frame frame = shown(step.target);
+    step.after = held.stored = frame.color(pixel_);
     step.depth = frame.depth_value(pixel_);
     steps.push_back(step);
   }
@@ -48,6 +47,7 @@ class PixelHistory {
   void add_triangle(PixelStep step, Draw draw) {
     draw.first_index += 3 * step.triangle;
     draw.index_count = 3;
+    step.target = draw.target;
     step.writes_color = draw.state.color_write;
     if (step.writes_color) {
       step.source = probe(draw, draw.pixel_program);
@@ -60,6 +60,12 @@ class PixelHistory {
   std::vector<PixelStep> steps;
 
  private:
+  // What the pixel is in the frame or in a surface: 0 before the first command.
+  struct Held {
+    Vec4 stored{};
+    PixelStep::Color in_double{};
+  };
+
   std::uint32_t add_program(const char* text) {
     trace_.programs.push_back({"probe.ps", text});
     return static_cast<std::uint32_t>(trace_.programs.size() - 1);
@@ -80,7 +86,22 @@ class PixelHistory {
     return color;
   }
 
-  // What `program` gives for the pixel, whatever is in the frame.
+  // The frame, or a surface in its place: the frame is then left out, and the surface's draws are done twice,
+  // as other surfaces may be made from it.
+  Frame shown(std::uint32_t target) const {
+    if (target == 0) return render_view(trace_, done_, options_);
+    std::vector<Command> commands;
+    for (const Command& command : done_) {
+      const auto* draw = std::get_if<Draw>(&command);
+      if (!draw || draw->target == 0) continue;
+      commands.push_back(command);
+      if (draw->target == target) std::get<Draw>(commands.emplace_back(command)).target = 0;
+    }
+    return render_view(trace_, commands, options_);
+  }
+
+  // What `program` gives for the pixel, whatever is in the frame. Surfaces of binary32 hold what they would
+  // in double, nearly.
   Vec4 probe(Draw draw, std::optional<std::uint32_t> program) const {
     draw.pixel_program = program;
     draw.target = 0;
@@ -97,6 +118,7 @@ class PixelHistory {
   std::size_t pixel_;
   RenderOptions options_, probe_;
   std::uint32_t diffuse_program_ = 0, texel_program_ = 0;
+  std::vector<Held> held_;  // of the frame and of each surface
   std::vector<Command> done_;
 };
 
@@ -121,12 +143,25 @@ std::string text_of(const Vec4& color) {
   return fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", color[0], color[1], color[2], color[3]);
 }
 
-// What the frame holds: in 8 bits the numbers themselves.
+// What the frame or a surface holds: in 8 bits the numbers themselves.
 std::string stored_text(const Vec4& color, FrameFormat format) {
   if (format != FrameFormat::unorm8) return text_of(color);
   std::string text;
   for (const float c : color) text += fmt::format("{}{:>3}", text.empty() ? "" : " ", std::lround(255 * c));
   return text;
+}
+
+// The surfaces that a draw writes and samples.
+std::string surfaces_text(const Draw& draw) {
+  std::string text;
+  if (draw.source) text += fmt::format(", from surface {}", *draw.source);
+  if (draw.target != 0) text += fmt::format(", into surface {}", draw.target);
+  return text;
+}
+
+// A texture has alpha alone.
+std::string texel_text(const Draw& draw, const Vec4& texel) {
+  return draw.source ? "texel " + text_of(texel) : fmt::format("texel alpha {:.4f}", texel[3]);
 }
 
 std::string double_text(const PixelStep::Color& color) {
@@ -178,14 +213,14 @@ std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& fo
 }
 
 std::string describe(const Trace& trace, const NumberFormats& formats, const std::vector<PixelStep>& steps) {
-  const char* const stored = formats.frame == FrameFormat::unorm8 ? "in 8 bits, of 255" : "in the frame";
+  const char* const stored = formats.frame == FrameFormat::unorm8 ? "in 8 bits, of 255" : "as stored";
   std::string out;
   std::uint32_t command = ~std::uint32_t{0};
   for (const PixelStep& step : steps) {
     const auto* draw = std::get_if<Draw>(&trace.commands[step.command]);
     if (draw && step.command != command) {
-      out += fmt::format("command {}: draw {}, by {}\n", step.command, step.draw,
-                         trace.programs[draw->vertex_program].name);
+      out += fmt::format("command {}: draw {}, by {}{}\n", step.command, step.draw,
+                         trace.programs[draw->vertex_program].name, surfaces_text(*draw));
     }
     command = step.command;
     if (!draw) {
@@ -198,8 +233,8 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
                          step.passed ? "passed" : "failed");
       if (!step.passed) continue;
       if (step.writes_color) {
-        out += fmt::format("    diffuse {}  texel alpha {:.4f}  source {}\n", text_of(step.diffuse),
-                           step.texel[3], text_of(step.source));
+        out += fmt::format("    diffuse {}  {}  source {}\n", text_of(step.diffuse),
+                           texel_text(*draw, step.texel), text_of(step.source));
       }
     }
     if (!draw || step.writes_color) {
@@ -207,7 +242,7 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
                          stored_text(step.before, formats.frame), stored_text(step.after, formats.frame),
                          double_text(step.before_in_double), double_text(step.after_in_double));
     }
-    out += fmt::format("    depth {:.7f}\n", step.depth);
+    if (step.target == 0) out += fmt::format("    depth {:.7f}\n", step.depth);
   }
   return out;
 }

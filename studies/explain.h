@@ -21,16 +21,18 @@ struct PixelStep {
   // Of a triangle:
   std::uint32_t draw = 0;      // its number among the draws of the trace
   std::uint32_t triangle = 0;  // of the draw, as indexed
+  std::uint32_t target = 0;    // 0 the frame, n > 0 the off-screen surface n
   bool passed = false;         // the depth test
   bool writes_color = false;
   Vec4 diffuse{};  // as the pixel unit sees it
-  Vec4 texel{};    // of the draw's texture, if it has one
-  Vec4 source{};   // out of the pixel program
-  // Before and after the step: what the frame holds in the machine's format, and what it would hold if
-  // blending were exact (in double, and never clamped) on the same sources.
+  // Of the draw's texture, or of the surface that it samples: this pixel of it, as it would be in double.
+  Vec4 texel{};
+  Vec4 source{};  // out of the pixel program
+  // Before and after the step: what the target holds in the machine's format, and what it would hold if
+  // blending were exact (in double, and never clamped), there and in the surface that the draw samples.
   Vec4 before{}, after{};
   Color before_in_double{}, after_in_double{};
-  double depth = 0;  // after it, 0 (near) to 1
+  double depth = 0;  // of the frame, after a step there: 0 (near) to 1
 };
 
 // Every step that reached the pixel, in order. Triangles that do not cover it have none. Throws UserError

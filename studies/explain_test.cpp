@@ -7,6 +7,8 @@
 #include "model/error.h"
 #include "model/render.h"
 #include "traces/recorder.h"
+#include "traces/volume_trace.h"
+#include "traces/volumes/volume_scene.h"
 
 namespace splatscope::studies {
 namespace {
@@ -75,6 +77,75 @@ TEST(Explain, DoubleIsWhatAFloatFrameNearlyHolds) {
         EXPECT_NEAR(step.after_in_double[c], step.after[c], 1e-5) << "tens of sums";
     }
     EXPECT_GT(steps.back().after_in_double[3], 0.01) << "something was drawn";
+  }
+}
+
+Trace small_volume_trace() {
+  const char* const text =
+      "[volume]\ngenerator = \"head\"\nvoxels = [4, 4, 3]\n[frame]\nwidth = 16\nheight = 16\n";
+  return traces::record(traces::parse_volume_scene(text, "head.toml")).trace;
+}
+
+// A sheet is summed up in a surface, then drawn over the frame: each is followed by itself.
+TEST(Explain, SurfacesAreApartFromTheFrame) {
+  const Trace trace = small_volume_trace();
+  for (const FrameFormat format : {FrameFormat::unorm8, FrameFormat::float32}) {
+    NumberFormats formats;
+    formats.frame = format;
+    const std::vector<PixelStep> steps = explain_pixel(trace, formats, 8, 8);
+    std::array<PixelStep, 2> last{};  // of the frame and of the surface
+    std::size_t composites = 0;
+    for (const PixelStep& step : steps) {
+      ASSERT_LE(step.target, 1u);
+      EXPECT_EQ(last[step.target].after, step.before);
+      EXPECT_EQ(last[step.target].after_in_double, step.before_in_double);
+      last[step.target] = step;
+      composites += step.target == 0 && step.kind == PixelStep::Kind::triangle;
+      // In 8 bits every splat and every composite is rounded once, and its source before it.
+      const double rounding = format == FrameFormat::unorm8 ? 4.0 / 255 : 1e-6;
+      for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(step.after_in_double[c], step.after[c], rounding);
+    }
+    EXPECT_GT(composites, 2u) << "sheets";
+    EXPECT_GT(last[0].after_in_double[3], 0.1) << "something was drawn";
+    RenderOptions options;
+    options.formats = formats;
+    EXPECT_EQ(render(trace, options).frame.color(8 * 16 + 8), last[0].after);
+    const std::string text = describe(trace, formats, steps);
+    EXPECT_NE(std::string::npos, text.find("by voxel_grid.vs, into surface 1\n"));
+    EXPECT_NE(std::string::npos, text.find("by sheet.vs, from surface 1\n"));
+  }
+}
+
+// A surface that is made from another, which is made anew from the first.
+TEST(Explain, SurfacesAreMadeFromEachOther) {
+  Trace trace = small_volume_trace();
+  std::vector<Draw> fills, copies;
+  for (const Command& command : trace.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (!draw) continue;
+    if (draw->source) copies.push_back(*draw);
+    if (!draw->source && !draw->texture && draw->target == 1 && !draw->state.blend) fills.push_back(*draw);
+  }
+  ASSERT_FALSE(fills.empty());
+  ASSERT_FALSE(copies.empty());
+  Draw fill = fills[0], copy = copies[0];
+  fill.constants = {{0.8f, 0.6f, 0.4f, 1}};
+  copy.constants = {{0.5f, 0.5f, 0.5f, 0.5f}};
+  copy.state.blend = false;
+  const auto copied = [&](std::uint32_t from, std::uint32_t to) {
+    Draw draw = copy;
+    draw.source = from;
+    draw.target = to;
+    return draw;
+  };
+  trace.surfaces = 2;
+  trace.commands = {Clear{}, fill, copied(1, 2), copied(2, 1), copied(1, 0)};
+  const std::vector<PixelStep> steps = explain_pixel(trace, {}, 8, 8);
+  ASSERT_EQ(5u, steps.size());
+  const double scale[] = {0, 1, 0.5, 0.25, 0.125};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_NEAR(0.8 * scale[i], steps[i].after[0], 1.5 / 255) << i;
+    EXPECT_NEAR(0.4 * scale[i], steps[i].after_in_double[2], 1.5 / 255) << i;
   }
 }
 
