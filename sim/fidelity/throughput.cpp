@@ -16,6 +16,7 @@ class ThroughputEstimate::State {
       : trace_(trace),
         machine_(machine),
         what_if_(what_if),
+        needs_(needs_of(trace)),
         layout_(lay_out(trace, machine)),
         draws_(prepare_draws(trace, machine, layout_)),
         stretches_(trace, machine, layout_, draws_, what_if) {}
@@ -75,7 +76,7 @@ class ThroughputEstimate::State {
 
   void add_clear() {
     double bytes = layout_.color.bytes();
-    if (!machine_.depth.fast_clear) bytes += layout_.depth.bytes();
+    if (needs_.depth && !machine_.depth.fast_clear) bytes += layout_.depth.bytes();
     stretches_.clear();
     busy_[kCommand] += memory_clocks(bytes, machine_);
     busy_[kMemory] += memory_clocks(bytes, machine_);
@@ -122,28 +123,28 @@ class ThroughputEstimate::State {
   }
 
   void add_units(Result& result) const {
-    const Needs needs = needs_of(trace_);
     add_unit(result, "vertex_fetch", busy_[kFetch]);
     for (int i = 0; i < machine_.vertex.units; ++i)
       add_unit(result, "vertex" + std::to_string(i), busy_[kVertex]);
     add_unit(result, "primitive", busy_[kPrimitive]);
     add_unit(result, "setup", busy_[kSetup]);
     add_unit(result, "raster", busy_[kRaster]);
-    if (needs.depth) add_unit(result, "depth", busy_[kDepth]);
-    if (needs.texture) add_unit(result, "texture", busy_[kTexture]);
-    if (needs.color) add_unit(result, "pixel", busy_[kPixel]);
-    if (needs.color) add_unit(result, "blend", busy_[kBlend]);
+    if (needs_.depth) add_unit(result, "depth", busy_[kDepth]);
+    if (needs_.texture) add_unit(result, "texture", busy_[kTexture]);
+    if (needs_.color) add_unit(result, "pixel", busy_[kPixel]);
+    if (needs_.color) add_unit(result, "blend", busy_[kBlend]);
     for (int i = 0; i < machine_.memory.channels; ++i)
       add_unit(result, "memory" + std::to_string(i), busy_[kMemory]);
     add_unit(result, "command", busy_[kCommand]);
-    if (needs.agp) add_unit(result, "agp", busy_[kAgp]);
+    if (needs_.agp) add_unit(result, "agp", busy_[kAgp]);
     add_unit(result, "host", busy_[kHost]);
-    result.units_left_out = left_out(trace_, needs, draws_.jobs);
+    result.units_left_out = left_out(trace_, needs_, draws_.jobs);
   }
 
   const Trace& trace_;
   const Machine& machine_;
   const WhatIf what_if_;
+  const Needs needs_;
   MemoryLayout layout_;
   PreparedDraws draws_;
   Stretches stretches_;

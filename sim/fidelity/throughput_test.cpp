@@ -60,6 +60,26 @@ TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
   EXPECT_EQ(estimate.frame_cycles[0], estimate.cycles);
 }
 
+// Where no draw uses depth there is none to clear. The simulation has the latency of its writes besides.
+TEST(Throughput, ClearsTheBuffersThatTheSimulationClears) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine.depth.fast_clear = false;
+  for (const bool depth : {false, true}) {
+    RandomTrace made = testing::simple_trace(10);
+    auto& draw = std::get<Draw>(made.trace.commands[1]);
+    draw.state.depth_test = draw.state.depth_write = depth;
+    made.trace.width = made.trace.height = 1024;
+    const Result estimate = estimate_throughput(made.trace, made.work, machine);
+    const Result simulated = simulate(made.trace, made.work, machine);
+    const double bytes = 1024 * 1024 * (depth ? 8 : 4);
+    EXPECT_NEAR(memory_clocks(bytes, machine), static_cast<double>(estimate.command_ends[0]),
+                0.01 * static_cast<double>(estimate.command_ends[0]));
+    EXPECT_NEAR(
+        1.0, static_cast<double>(estimate.command_ends[0]) / static_cast<double>(simulated.command_ends[0]),
+        0.1);
+  }
+}
+
 // Four corners from a vertex: what does not depend on the corner runs once.
 TEST(Throughput, WhatIfAVertexEmitsFourCorners) {
   const Machine machine = machine::load("geforce4-ti4400");
