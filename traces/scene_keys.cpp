@@ -5,6 +5,7 @@
 #include <array>
 
 #include "kernels/splat_programs.h"
+#include "traces/trace_file.h"
 
 namespace splatscope::traces {
 namespace {
@@ -114,7 +115,7 @@ const std::array kKeys = {
              BooleanValue{[](S& s) -> bool& { return s.splatting.refine; }, false}},
     SceneKey{"splatting", "texture_length", "texels",
              "width and height of the alpha texture; 0: the least that Eq. 16 allows for `cutoff`",
-             IntegerValue{[](S& s) -> int& { return s.splatting.texture_length; }, 0, 0, 4096}},
+             IntegerValue{[](S& s) -> int& { return s.splatting.texture_length; }, 0, 0, kMaxTextureEdge}},
     SceneKey{
         "splatting", "vertex_memory", "",
         "where the vertex buffers lie; auto: in video memory until `video_megabytes` are full",

@@ -153,6 +153,8 @@ TEST(Scene, ErrorsNameLineAndExpectation) {
             "s.toml:2: splatting.gamma is nan, expected a number from 0 to 1");
   EXPECT_EQ(error_of("[splatting]\ncircular_cutoff = 1\n"),
             "s.toml:2: splatting.circular_cutoff is 1, expected true or false");
+  EXPECT_EQ(error_of("[splatting]\ntexture_length = 2049\n"),
+            "s.toml:2: splatting.texture_length is 2049, expected a whole number from 0 to 2048");
   EXPECT_EQ(error_of("[splatting]\nrefine = true\nalgorithm = \"no-ewa\"\n"),
             "s.toml:2: splatting.refine with algorithm \"no-ewa\", expected \"ewa-per-surfel\"");
   EXPECT_EQ(error_of("[camera]\neye = [1, 2]\n"),

@@ -13,13 +13,12 @@
 namespace splatscope::traces {
 namespace {
 
-constexpr std::uint32_t kMaxFrameEdge = 4096;    // pixels
-constexpr std::uint32_t kMaxTextureEdge = 2048;  // texels: the limit of both machines of 2002
-constexpr std::uint32_t kMaxStride = 1024;       // bytes: 16 attributes of 16 bytes, and room
-constexpr std::size_t kMaxConstants = 96;        // vs_1_1
-constexpr std::uint32_t kMaxSurfaces = 4;        // off-screen
-constexpr std::size_t kMaxFrames = 1000;         // each is a picture of `run`
-constexpr std::uint8_t kInputs = 16;             // vs_1_1
+constexpr std::uint32_t kMaxFrameEdge = 4096;  // pixels
+constexpr std::uint32_t kMaxStride = 1024;     // bytes: 16 attributes of 16 bytes, and room
+constexpr std::size_t kMaxConstants = 96;      // vs_1_1
+constexpr std::uint32_t kMaxSurfaces = 4;      // off-screen
+constexpr std::size_t kMaxFrames = 1000;       // each is a picture of `run`
+constexpr std::uint8_t kInputs = 16;           // vs_1_1
 
 struct Loaded {
   isa::ShaderKind kind;

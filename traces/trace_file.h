@@ -15,6 +15,8 @@ namespace splatscope::traces {
 // Of the format. A file of a newer version is refused; older ones are read.
 inline constexpr std::uint32_t kTraceVersion = 3;
 
+inline constexpr int kMaxTextureEdge = 2048;  // texels: the limit of both machines of 2002
+
 // The file appears whole or not at all. Throws UserError where the trace breaks a rule of check_trace or the
 // place cannot be written.
 void write_trace(const Trace& trace, const std::filesystem::path& path);
