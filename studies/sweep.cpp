@@ -98,14 +98,13 @@ SweptParameter swept_parameter(std::string_view text) {
   SweptParameter parameter;
   if (equals != std::string_view::npos) {
     parameter.key = text.substr(0, equals);
-    std::string_view rest = text.substr(equals + 1);
-    while (!rest.empty()) {
-      const std::size_t comma = std::min(rest.find(','), rest.size());
-      parameter.values.emplace_back(rest.substr(0, comma));
-      rest.remove_prefix(std::min(comma + 1, rest.size()));
+    for (std::size_t end = equals; end < text.size();) {
+      const std::size_t begin = end + 1;
+      end = std::min(text.find(',', begin), text.size());
+      parameter.values.emplace_back(text.substr(begin, end - begin));
     }
   }
-  if (parameter.key.empty() || parameter.values.empty())
+  if (parameter.key.empty() || equals + 1 == text.size())
     throw UserError("--sweep", 0, fmt::format("\"{}\", expected KEY=VALUE,VALUE,...", text));
   return parameter;
 }

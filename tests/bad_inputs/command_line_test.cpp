@@ -58,6 +58,7 @@ TEST(BadInputs, CommandLines) {
       {"sweep", "tiny.toml"},
       {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2", "--fidelity", "functional"},
       {"sweep", "tiny.toml", "--sweep", "vertex.units=,"},
+      {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2,"},
       {"sweep", "tiny.toml", "--sweep", "vertex.units=1,nan"},
       {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2", "--sweep", "vertex.units=3"},
       {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2", "--set", "vertex.units=3"},
