@@ -18,7 +18,6 @@ find_package(FlatBuffers CONFIG REQUIRED)
 
 add_library(Highway ALIAS PkgConfig::hwy)
 add_library(OpenImage ALIAS PkgConfig::openimageio)
-add_library(Glm INTERFACE)  # header only, in the system's include folder
 add_library(Flatbuffers INTERFACE)
 target_link_libraries(Flatbuffers INTERFACE flatbuffers::flatbuffers)
 # Debian builds SystemC as C++17; its link-time check must be told so in a C++20 program.

@@ -77,6 +77,13 @@ double student_t(double freedom) {
          (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
 }
 
+// What the time counts from a mark of a thinned draw to the next one.
+enum class Role : std::uint8_t {
+  exact,    // itself: start and end of a draw
+  warming,  // nothing: the machine comes from another place of the draw
+  sample    // a sample of what was left out
+};
+
 // From a mark to the next one, in the run of the thinned draws.
 struct Interval {
   Role role = Role::exact;
@@ -165,7 +172,7 @@ class Sampler {
       from = std::max(from, kept);
       if (from >= to) return;
       kept = to;
-      thin.keep(from * kStretch, std::min(to * kStretch, job.work->triangles.size()), role);
+      thin.keep(from * kStretch, std::min(to * kStretch, job.work->triangles.size()));
       intervals_.push_back({role, &population, clocks});
     };
     keep(0, kHead, Role::exact, 0);

@@ -130,9 +130,9 @@ TEST(ThinDraw, KeepsPartsOfADrawAndKnowsWhatLiesBetween) {
   whole.draw = &std::get<Draw>(made.trace.commands[1]);
   whole.work = &made.work[0];
   ThinDraw thin(whole);
-  thin.keep(0, 64, Role::exact);
-  thin.keep(64, 128, Role::warming);
-  thin.keep(512, 1000, Role::sample);
+  thin.keep(0, 64);
+  thin.keep(64, 128);
+  thin.keep(512, 1000);
   const DrawJob job = thin.job();
   const DrawWork& all = made.work[0];
   const DrawWork& kept = *job.work;

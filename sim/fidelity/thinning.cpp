@@ -25,7 +25,7 @@ ThinDraw::Place ThinDraw::find(const DrawWork& work, Place at, std::size_t trian
   return at;
 }
 
-void ThinDraw::keep(std::size_t from, std::size_t to, Role role) {
+void ThinDraw::keep(std::size_t from, std::size_t to) {
   const DrawWork& work = *whole_.work;
   const Place begin = find(work, end_, from);
   const Place end = find(work, begin, to);
@@ -35,7 +35,6 @@ void ThinDraw::keep(std::size_t from, std::size_t to, Role role) {
                      std::span(work.texel_blocks).subspan(end_.block, begin.block - end_.block)});
   }
   marks_.push_back(static_cast<std::uint32_t>(work_.triangles.size()));
-  roles_.push_back(role);
   append(work_.triangles, work.triangles, begin.triangle, end.triangle);
   append(work_.shaded_vertices, work.shaded_vertices, begin.vertex, end.vertex);
   append(work_.quads, work.quads, begin.quad, end.quad);

@@ -1,20 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "sim/draw_jobs.h"
 #include "sim/units/draw_unit.h"
 
 namespace splatscope::sim {
-
-// What the time counts from a mark of a thinned draw to the next one.
-enum class Role : std::uint8_t {
-  exact,    // itself: start and end of a draw
-  warming,  // nothing: the machine comes from another place of the draw
-  sample    // a sample of what was left out
-};
 
 // A draw of which samples are left, one behind the other as if they were neighbours: so the pipeline runs on
 // from each to the next, full and in its rhythm. Holds what the spans of its job() point to.
@@ -23,12 +15,10 @@ class ThinDraw {
   explicit ThinDraw(const DrawJob& whole);
   ThinDraw(ThinDraw&&) = default;
 
-  // Keeps triangles [from, to) of the draw, from where the last call ended or after it. The triangles must be
-  // whole stretches (kStretch) but at the end of the draw.
-  void keep(std::size_t from, std::size_t to, Role role);
+  // Keeps triangles [from, to) of the draw, from where the last call ended or after it, and marks where they
+  // begin. They must be whole stretches (kStretch) but at the end of the draw.
+  void keep(std::size_t from, std::size_t to);
   DrawJob job();
-
-  std::span<const Role> roles() const { return roles_; }  // what each mark of the job begins
 
  private:
   struct Place {  // in the records of the draw
@@ -41,7 +31,6 @@ class ThinDraw {
   Place end_;  // of what was kept last
   std::vector<Cut> cuts_;
   std::vector<std::uint32_t> marks_;
-  std::vector<Role> roles_;
 };
 
 }  // namespace splatscope::sim

@@ -7,24 +7,6 @@
 #include <numbers>
 
 namespace splatscope::kernels {
-namespace {
-
-std::optional<Footprint> finished(const View& view, VolumePrefilter prefilter, const RaySpace& ray,
-                                  const glm::dmat2& variance) {
-  Footprint result{.center = glm::dvec2(ray.position), .distance = ray.position.z};
-  result.variance = prefiltered(prefilter, variance);
-  result.conic = glm::inverse(result.variance);
-  const double volume_scale = std::abs(glm::determinant(ray.jacobian)) *
-                              std::abs(glm::determinant(glm::dmat3(view.object_to_camera)));
-  result.peak = volume_scale * 0.5 * std::numbers::inv_pi / std::sqrt(glm::determinant(result.variance));
-  const double sum = result.center.x + result.center.y + result.conic[0][0] + result.conic[0][1] +
-                     result.conic[1][1] + result.peak;
-  if (!std::isfinite(sum)) return std::nullopt;
-  return result;
-}
-
-}  // namespace
-
 RaySpace ray_space(const View& view, Projection projection, const glm::dvec3& camera) {
   if (projection == Projection::orthographic) {
     RaySpace ray;
@@ -82,17 +64,16 @@ std::optional<Footprint> footprint(const View& view, Projection projection, Volu
                                    const glm::dvec3& camera, const glm::dmat3& camera_variance) {
   if (!(camera.z > view.near_plane)) return std::nullopt;
   const RaySpace ray = ray_space(view, projection, camera);
-  return finished(view, prefilter, ray, projected_variance(ray, camera_variance));
-}
-
-std::optional<Footprint> spherical_footprint(const View& view, VolumePrefilter prefilter,
-                                             const glm::dvec3& camera, double sigma_squared) {
-  if (!(camera.z > view.near_plane)) return std::nullopt;
-  const glm::dvec2 slope{camera.x / camera.z, -camera.y / camera.z};
-  const double scale = view.eta / camera.z;
-  const glm::dmat2 variance =
-      sigma_squared * scale * scale * (glm::dmat2(1.0) + glm::outerProduct(slope, slope));
-  return finished(view, prefilter, ray_space(view, Projection::perspective, camera), variance);
+  Footprint result{.center = glm::dvec2(ray.position), .distance = ray.position.z};
+  result.variance = prefiltered(prefilter, projected_variance(ray, camera_variance));
+  result.conic = glm::inverse(result.variance);
+  const double volume_scale = std::abs(glm::determinant(ray.jacobian)) *
+                              std::abs(glm::determinant(glm::dmat3(view.object_to_camera)));
+  result.peak = volume_scale * 0.5 * std::numbers::inv_pi / std::sqrt(glm::determinant(result.variance));
+  const double sum = result.center.x + result.center.y + result.conic[0][0] + result.conic[0][1] +
+                     result.conic[1][1] + result.peak;
+  if (!std::isfinite(sum)) return std::nullopt;
+  return result;
 }
 
 double exact_integral(const View& view, Projection projection, const glm::dvec3& camera,

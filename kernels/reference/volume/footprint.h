@@ -59,10 +59,6 @@ glm::dmat3 camera_variance(const View& view, const glm::dmat3& object_variance);
 std::optional<Footprint> footprint(const View& view, Projection projection, VolumePrefilter prefilter,
                                    const glm::dvec3& camera, const glm::dmat3& camera_variance);
 
-// The same for a spherical kernel of variance sigma^2 I in camera space: J J^T written out.
-std::optional<Footprint> spherical_footprint(const View& view, VolumePrefilter prefilter,
-                                             const glm::dvec3& camera, double sigma_squared);
-
 // V'_k of Eq. 31 without its third row and column (Eq. 24).
 glm::dmat2 projected_variance(const RaySpace& ray, const glm::dmat3& camera_variance);
 

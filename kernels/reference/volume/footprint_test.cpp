@@ -144,21 +144,19 @@ TEST(VolumeFootprint, JacobianIsTheDerivativeOfTheMapToRaySpace) {
   }
 }
 
-TEST(VolumeFootprint, SphericalShortcutIsTheGeneralFootprint) {
+// sigma^2 J J^T written out, of a sphere.
+TEST(VolumeFootprint, OfASphericalKernel) {
   const View view = test_view();
   const double sigma_squared = 0.03;
-  for (const VolumePrefilter prefilter :
-       {VolumePrefilter::ewa, VolumePrefilter::swan, VolumePrefilter::none}) {
-    const glm::dvec3 camera{0.7, -0.4, 2.5};
-    const auto general =
-        footprint(view, Projection::perspective, prefilter, camera, glm::dmat3(sigma_squared));
-    const auto spherical = spherical_footprint(view, prefilter, camera, sigma_squared);
-    ASSERT_TRUE(general && spherical);
-    for (int i = 0; i < 4; ++i) {
-      EXPECT_NEAR(spherical->variance[i / 2][i % 2], general->variance[i / 2][i % 2], 1e-9);
-    }
-    EXPECT_NEAR(spherical->peak / general->peak, 1, 1e-12);
-  }
+  const glm::dvec3 camera{0.7, -0.4, 2.5};
+  const auto print =
+      footprint(view, Projection::perspective, VolumePrefilter::none, camera, glm::dmat3(sigma_squared));
+  ASSERT_TRUE(print);
+  const glm::dvec2 slope{camera.x / camera.z, -camera.y / camera.z};
+  const double scale = view.eta / camera.z;
+  const glm::dmat2 variance =
+      sigma_squared * scale * scale * (glm::dmat2(1.0) + glm::outerProduct(slope, slope));
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(print->variance[i / 2][i % 2], variance[i / 2][i % 2], 1e-9);
 }
 
 TEST(VolumeFootprint, SwansScalingBringsTheSmallerRadiusToTheLowPassAndKeepsTheShape) {
@@ -205,7 +203,6 @@ TEST(VolumeFootprint, NothingAtOrBeforeTheNearPlane) {
   const glm::dmat3 variance(0.1);
   EXPECT_FALSE(footprint(view, Projection::perspective, VolumePrefilter::ewa, {0, 0, 1}, variance));
   EXPECT_TRUE(footprint(view, Projection::perspective, VolumePrefilter::ewa, {0, 0, 1.1}, variance));
-  EXPECT_FALSE(spherical_footprint(view, VolumePrefilter::ewa, {0, 0, 0.5}, 0.1));
 }
 
 }  // namespace
