@@ -8,7 +8,7 @@
 
 #include "model/error.h"
 #include "model/geometry.h"
-#include "model/output/blend_factor.h"
+#include "model/output/blended.h"
 #include "model/render.h"
 #include "model/vertex/vertex_fetch.h"
 #include "studies/shader_case.h"

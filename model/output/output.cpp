@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "model/number/frame_value.h"
-#include "model/output/blend_factor.h"
+#include "model/output/blended.h"
 
 namespace splatscope::output {
 namespace {
