@@ -12,33 +12,16 @@
 #include <cstring>
 #include <numbers>
 
+#include "kernels/reference/simd_vectors-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using F = hn::CappedTag<float, FastSurfels::kPadding>;
-using I = hn::RebindToSigned<F>;
-using V = hn::Vec<F>;
-using M = hn::Mask<F>;
 
 constexpr std::size_t kSplatValues = offsetof(FastSplat, quad) / sizeof(float);
 
-struct V3 {
-  V x, y, z;
-};
-
-HWY_INLINE V set(float value) {
-  return hn::Set(F{}, value);
-}
 HWY_INLINE V3 cross(const V3& a, const V3& b) {
   return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE V square(V a) {
-  return hn::Mul(a, a);
 }
 
 // Boxes of the pixels whose centres lie between low and high, a lane each.

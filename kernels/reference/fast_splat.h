@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/reference/row_bands.h"
+#include "kernels/view.h"
 
 // The inside of fast_splatting: its data, and what is done to them on SIMD registers.
 namespace splatscope::kernels {
@@ -19,15 +20,21 @@ struct FastSurfels {
   std::array<std::vector<float>, kComponents> values;
 };
 
-// View and settings in single precision.
-struct FastView {
+// A view in single precision.
+struct FastCamera {
+  explicit FastCamera(const View& view);
   float rows[3][4];  // object to camera
-  float eta, center_x, center_y;
-  float near_plane, far_plane;
+  float eta, center_x, center_y, near_plane;
   float width, height;
-  float low_pass;  // variance of the low-pass filter, pixels: 1, or 0 without
-  float reach;     // sqrt(2c)
-  bool cull_back_faces;
+};
+
+// With the settings.
+struct FastView : FastCamera {
+  using FastCamera::FastCamera;
+  float far_plane = 0;
+  float low_pass = 0;  // variance of the low-pass filter, pixels: 1, or 0 without
+  float reach = 0;     // sqrt(2c)
+  bool cull_back_faces = false;
 };
 
 struct FastBox {

@@ -4,22 +4,26 @@
 #include <cmath>
 
 namespace splatscope::kernels {
+
+FastCamera::FastCamera(const View& view)
+    : eta(static_cast<float>(view.eta)),
+      center_x(static_cast<float>(view.center().x)),
+      center_y(static_cast<float>(view.center().y)),
+      near_plane(static_cast<float>(view.near_plane)),
+      width(static_cast<float>(view.width)),
+      height(static_cast<float>(view.height)) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      rows[row][column] = static_cast<float>(view.object_to_camera[column][row]);
+    }
+  }
+}
+
 namespace {
 
 FastView fast_view(const View& view, const FastSettings& settings) {
-  FastView fast{};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      fast.rows[row][column] = static_cast<float>(view.object_to_camera[column][row]);
-    }
-  }
-  fast.eta = static_cast<float>(view.eta);
-  fast.center_x = static_cast<float>(view.center().x);
-  fast.center_y = static_cast<float>(view.center().y);
-  fast.near_plane = static_cast<float>(view.near_plane);
+  FastView fast(view);
   fast.far_plane = static_cast<float>(view.far_plane);
-  fast.width = static_cast<float>(view.width);
-  fast.height = static_cast<float>(view.height);
   fast.low_pass = settings.prefilter ? 1.0f : 0.0f;
   fast.reach = static_cast<float>(std::sqrt(2.0 * settings.cutoff));
   fast.cull_back_faces = settings.cull_back_faces;

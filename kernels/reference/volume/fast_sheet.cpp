@@ -10,30 +10,13 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "kernels/reference/simd_vectors-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace splatscope::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
 constexpr std::size_t kLanes = FastSurfels::kPadding;  // at most
-using F = hn::CappedTag<float, kLanes>;
-using I = hn::RebindToSigned<F>;
-using V = hn::Vec<F>;
-using M = hn::Mask<F>;
-
-struct V3 {
-  V x, y, z;
-};
-
-HWY_INLINE V set(float value) {
-  return hn::Set(F{}, value);
-}
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE V square(V a) {
-  return hn::Mul(a, a);
-}
 
 // W a, and W^T a, which takes a row of the Jacobian to object space.
 HWY_INLINE V3 turned(const FastVolumeView& view, const V3& a) {

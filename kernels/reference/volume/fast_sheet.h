@@ -30,19 +30,17 @@ struct SpecularTable {
 };
 
 // View and settings in single precision.
-struct FastVolumeView {
-  float rows[3][4];    // object to camera
-  float normal_scale;  // 1/scale of the view: normals stay of unit length
-  float eta, center_x, center_y, near_plane;
-  float width, height;
-  bool perspective;
-  VolumePrefilter prefilter;
-  FastKernels kernels;
-  FastVariance variance;  // camera space; not where each has its own
-  float opacity_scale;    // of weight |J| / sqrt |V|
-  float reach;            // sqrt(cutoff)
-  float ambient, diffuse;
-  float toward_light[3];
+struct FastVolumeView : FastCamera {
+  using FastCamera::FastCamera;
+  float normal_scale = 0;  // 1/scale of the view: normals stay of unit length
+  bool perspective = false;
+  VolumePrefilter prefilter{};
+  FastKernels kernels{};
+  FastVariance variance{};  // camera space; not where each has its own
+  float opacity_scale = 0;  // of weight |J| / sqrt |V|
+  float reach = 0;          // sqrt(cutoff)
+  float ambient = 0, diffuse = 0;
+  float toward_light[3]{};
 };
 
 // A splat as one view sees it.

@@ -23,21 +23,10 @@ bool is_spherical(const glm::dmat3& v) {
 
 FastVolumeView fast_view(const View& view, const VolumeSettings& settings, const VolumeSplats& splats,
                          bool flat) {
-  FastVolumeView fast{};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      fast.rows[row][column] = static_cast<float>(view.object_to_camera[column][row]);
-    }
-    fast.toward_light[row] = static_cast<float>(settings.light.toward_light[row]);
-  }
+  FastVolumeView fast(view);
+  for (int i = 0; i < 3; ++i) fast.toward_light[i] = static_cast<float>(settings.light.toward_light[i]);
   const double volume = std::abs(glm::determinant(glm::dmat3(view.object_to_camera)));
   fast.normal_scale = static_cast<float>(1 / std::cbrt(volume));
-  fast.eta = static_cast<float>(view.eta);
-  fast.center_x = static_cast<float>(view.center().x);
-  fast.center_y = static_cast<float>(view.center().y);
-  fast.near_plane = static_cast<float>(view.near_plane);
-  fast.width = static_cast<float>(view.width);
-  fast.height = static_cast<float>(view.height);
   fast.perspective = settings.projection == Projection::perspective;
   fast.prefilter = settings.prefilter;
   fast.opacity_scale =
