@@ -8,6 +8,7 @@
 
 #include "model/byte_order_mark.h"
 #include "model/error.h"
+#include "traces/words.h"
 
 namespace splatscope::traces {
 namespace {
@@ -32,16 +33,6 @@ std::optional<PlyType> type_named(std::string_view name) {
   return std::nullopt;
 }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; (at = line.find_first_not_of(" \t\r", at)) != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = end;
-  }
-  return words;
-}
-
 // The header, line by line.
 class HeaderReader {
  public:
@@ -54,7 +45,7 @@ class HeaderReader {
     bool has_format = false;
     for (;;) {
       const std::string line = next_line();
-      const auto words = words_of(line);
+      const auto words = words_of(line, " \t\r");
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words[0] == "format") {
         read_format(words);
