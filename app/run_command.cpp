@@ -169,13 +169,15 @@ void run(const Options& options, bool quiet) {
 void add_observe_options(CLI::App& command, studies::ObserveOptions& observe) {
   CLI::Option* timeline = command.add_option("--timeline", observe.timeline,
                                              "a file for Perfetto: what each unit did when, queues, memory");
-  command.add_option("--timeline-window", observe.window, "FIRST:LAST: core cycles that it shows")
-      ->needs(timeline);
+  const auto add_window = [&command](const char* name, studies::CycleWindow& window, CLI::Option* of) {
+    const auto take = [name, &window](const std::string& text) { window = studies::window_of(text, name); };
+    command.add_option_function<std::string>(name, take, "FIRST:LAST: core cycles that it shows")->needs(of);
+  };
+  add_window("--timeline-window", observe.timeline_window, timeline);
   CLI::Option* pipeline = command.add_option(
       "--pipeline", observe.pipeline,
       "a file for Konata: each instruction of the vertex units, when it waited and issued");
-  command.add_option("--pipeline-window", observe.pipeline_window, "FIRST:LAST: core cycles that it shows")
-      ->needs(pipeline);
+  add_window("--pipeline-window", observe.pipeline_window, pipeline);
   CLI::Option* counters = command.add_option("--counters", observe.counters,
                                              "a table (CSV) of shares, statistics and queues over time");
   command.add_option("--counters-every", observe.counters_every, "core cycles a row of it")

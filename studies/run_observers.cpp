@@ -35,8 +35,6 @@ CycleWindow window_of(const std::string& text, const char* option) {
 }
 
 void check(const ObserveOptions& options) {
-  window_of(options.window, "--timeline-window");
-  window_of(options.pipeline_window, "--pipeline-window");
   for (const std::string* path : {&options.timeline, &options.pipeline, &options.counters})
     if (!path->empty()) const traces::OutputFile probe(*path);
 }
@@ -63,12 +61,12 @@ T& RunObservers::add(const std::string& path, Arguments&&... arguments) {
 
 RunObservers::RunObservers(const ObserveOptions& options, const Trace& trace) {
   if (!options.timeline.empty()) {
-    const CycleWindow window = window_of(options.window, "--timeline-window");
+    const CycleWindow window = options.timeline_window;
     timeline_ = &add<sim::Timeline>(options.timeline, trace,
                                     sim::Timeline::Window{.first = window.first, .last = window.last});
   }
   if (!options.pipeline.empty()) {
-    const CycleWindow window = window_of(options.pipeline_window, "--pipeline-window");
+    const CycleWindow window = options.pipeline_window;
     pipeline_ = &add<sim::PipelineLog>(options.pipeline, trace,
                                        sim::PipelineLog::Window{.first = window.first, .last = window.last});
   }

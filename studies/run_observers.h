@@ -13,15 +13,6 @@
 // Files that a run writes while it goes on, about what happens in the machine.
 namespace splatscope::studies {
 
-struct ObserveOptions {
-  std::string timeline;                   // file for Perfetto; empty: none
-  std::string window;                     // of the timeline, core cycles: "FIRST:LAST"; empty: all
-  std::string pipeline;                   // file for Konata; empty: none
-  std::string pipeline_window;            // of it, as above
-  std::string counters;                   // file for a table (CSV); empty: none
-  std::uint64_t counters_every = 10'000;  // core cycles a row
-};
-
 // "1000:2000", "1000:", ":2000" or "": the first and the last core cycle. Throws UserError (file `option`)
 // for anything else.
 struct CycleWindow {
@@ -29,14 +20,21 @@ struct CycleWindow {
 };
 CycleWindow window_of(const std::string& text, const char* option);
 
-// Throws UserError where a window is wrong or a file cannot be made: what RunObservers would say only once
-// there is a trace.
+struct ObserveOptions {
+  std::string timeline;                   // file for Perfetto; empty: none
+  CycleWindow timeline_window;            // what it shows
+  std::string pipeline;                   // file for Konata; empty: none
+  CycleWindow pipeline_window;            // the same of it
+  std::string counters;                   // file for a table (CSV); empty: none
+  std::uint64_t counters_every = 10'000;  // core cycles a row
+};
+
+// Throws UserError where a file cannot be made: what RunObservers would say only once there is a trace.
 void check(const ObserveOptions& options);
 
 class RunObservers {
  public:
-  // Of a run of `trace`, which outlives them. Throws UserError where a window is wrong or a file cannot be
-  // made.
+  // Of a run of `trace`, which outlives them. Throws UserError where a file cannot be made.
   RunObservers(const ObserveOptions& options, const Trace& trace);
   ~RunObservers();
 
