@@ -139,6 +139,8 @@ void run(const Options& options, bool quiet) {
   libraries.wait();
   recording.clear();
   studies::replace_programs(input.trace, options.programs);
+  if (fidelity == studies::Fidelity::sampled || simulates_cycles(fidelity))
+    sim::expect_countable_time(input.trace, machine);
   studies::RunObservers observers(options.observe, input.trace);
   std::optional<studies::HeatMaps> heat_maps;
   std::vector<sim::Observer*> watching(observers.observers().begin(), observers.observers().end());

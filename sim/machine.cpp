@@ -1,9 +1,11 @@
 #include "sim/machine.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "model/error.h"
+#include "model/number/frame_value.h"
 #include "sim/draw_jobs.h"
 #include "sim/kernel/systemc_clocks.h"
 #include "sim/units/agp/agp_bus.h"
@@ -244,6 +246,25 @@ void set_commands(SimulatedMachine& machine, const Units& u, const Machine& spec
 
 }  // namespace
 
+void expect_countable_time(const Trace& trace, const Machine& spec) {
+  const auto normalizations = std::ranges::count_if(trace.commands, [](const Command& command) {
+    return std::holds_alternative<NormalizeOnHost>(command);
+  });
+  const double pixels = static_cast<double>(normalizations) * trace.width * trace.height;
+  const auto commands = static_cast<double>(trace.commands.size());
+  const Femtoseconds pixel_time =
+      Host::pixel_time(spec.host, period_of(spec.clock.bus_megahertz), bytes_per_pixel(spec.numbers.frame));
+  const double time = commands * static_cast<double>(femtoseconds_of(spec.host.command_nanoseconds)) +
+                      pixels * static_cast<double>(pixel_time);
+  if (time <= static_cast<double>(kMostTime)) return;
+  throw UserError("trace", 0,
+                  fmt::format("the host alone takes {:.1f} hours of the machine's time, for {:.0f} commands "
+                              "(host.command_nanoseconds) and {:.0f} pixels that it normalises "
+                              "(host.uncached_read_nanoseconds, host.uncached_read_bytes, "
+                              "host.division_nanoseconds), expected at most 5",
+                              time / 3.6e18, commands, pixels));
+}
+
 SimulatedMachine::SimulatedMachine(const Machine& machine, Scheduler scheduler)
     : core("core", period_of(machine.clock.core_megahertz), period_of(machine.clock.core_megahertz),
            scheduler),
@@ -272,6 +293,7 @@ void SimulatedMachine::run() {
 std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraws draws,
                                                 const MemoryLayout& layout, const Machine& spec,
                                                 Scheduler scheduler, UnitChoice choice) {
+  expect_countable_time(trace, spec);
   auto machine = std::make_unique<SimulatedMachine>(spec, scheduler);
   const Needs needs = choice == UnitChoice::all ? Needs{true, true, true, true} : needs_of(trace);
   machine->vertex_programs = std::move(draws.vertex_programs);

@@ -53,7 +53,11 @@ enum class UnitChoice : std::uint8_t {
   all      // of the machine: slower, and the same cycles
 };
 
-// Creates the units and connects them. `draws`: of the trace.
+// UserError where the host alone needs longer for `trace` than a run can take (kMostTime): what is known
+// before anything is drawn.
+void expect_countable_time(const Trace& trace, const Machine& machine);
+
+// Creates the units and connects them. `draws`: of the trace. Throws what expect_countable_time does.
 std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraws draws,
                                                 const MemoryLayout& layout, const Machine& machine,
                                                 Scheduler scheduler, UnitChoice choice = UnitChoice::needed);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <set>
 
@@ -229,6 +230,55 @@ TEST(Simulate, AProgramThatDoesNotLoadIsAUsersError) {
   RandomTrace made = simple_trace(10);
   made.trace.programs[1].text = "vs_1_1\nmoo r0, v0\n";
   EXPECT_THROW(simulate(made.trace, made.work, Machine{}), UserError);
+}
+
+// What `run` says of the user's fault; empty: nothing.
+std::string error_of(const std::function<void()>& run) {
+  try {
+    run();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Simulate, ATimeThatCannotBeCountedIsAUsersError) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine::set(machine, "host.command_nanoseconds=1e9");
+  Trace clears;
+  clears.width = clears.height = 4;
+  clears.commands.assign(18'001, Clear{});
+  EXPECT_TRUE(
+      error_of([&] {
+        simulate(clears, {}, machine);
+      }).starts_with("trace: the host alone takes 5.0 hours of the machine's time, for 18001 commands"));
+  clears.commands.resize(18'000);
+  EXPECT_EQ(error_of([&] { expect_countable_time(clears, machine); }), "");
+
+  machine = machine::load("geforce4-ti4400");
+  machine::set(machine, "host.uncached_read_nanoseconds=1e6");
+  machine::set(machine, "numbers.frame=float32");
+  Trace pixels;
+  pixels.width = pixels.height = 4096;
+  pixels.commands = {NormalizeOnHost{}};
+  EXPECT_TRUE(error_of([&] {
+                simulate(pixels, {}, machine);
+              }).starts_with("trace: the host alone takes 74.6 hours of the machine's time, for 1 commands"));
+  pixels.width = 1;
+  EXPECT_EQ(error_of([&] { expect_countable_time(pixels, machine); }), "");
+}
+
+// What the host does is just countable, and the clears are not.
+TEST(Simulate, ARunEndsWhereItsTimeCannotBeCounted) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine::set(machine, "host.command_nanoseconds=1e9");
+  machine::set(machine, "clock.core_megahertz=1");
+  Trace clears;
+  clears.width = clears.height = 64;
+  clears.commands.assign(18'000, Clear{});
+  EXPECT_TRUE(error_of([&] {
+                simulate(clears, {}, machine);
+              }).starts_with("trace: takes more than 5 hours of the machine's time"));
 }
 
 TEST(Simulate, ProgressGrowsToOne) {

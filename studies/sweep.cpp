@@ -144,6 +144,10 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
   for (const Group& same : groups) {
     sweep.input = make_input(opened, scene_or_trace, same.machine);
     const Trace& trace = sweep.input.trace;
+    if (fidelity != Fidelity::throughput) {
+      for (const std::size_t i : same.points)
+        sim::expect_countable_time(trace, machine_of(machine, sweep.points[i]));
+    }
     const WorkStream stream = work_of(trace, same.machine, cache, sweep);
     const auto time_one = [&](std::size_t i) {
       const Machine timed = machine_of(machine, sweep.points[same.points[i]]);

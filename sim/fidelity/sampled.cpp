@@ -113,7 +113,7 @@ class Sampler {
     weigh();
     Result result;
     result.cycles = static_cast<Cycle>(std::llround(estimated(machine_->cycles())));
-    result.seconds = static_cast<double>(machine_->core.time(result.cycles)) * 1e-15;
+    result.seconds = static_cast<double>(result.cycles) * static_cast<double>(machine_->core.time(1)) * 1e-15;
     result.cycles_plus_minus = plus_minus();
     for (const Cycle end : machine_->host->command_ends())
       result.command_ends.push_back(static_cast<Cycle>(std::llround(estimated(machine_->core_cycle(end)))));

@@ -33,7 +33,13 @@ Cycle ClockDomain::next_visited() const {
 
 void ClockDomain::run(Cycle last) {
   limit_ = last;
-  for (Cycle at = next_visited(); at <= limit_ && at != kNever; at = next_visited()) visit(at);
+  const Cycle first = next_visited();
+  if (first != kNever && first > kMostTime / period_) {
+    throw UserError("trace", 0,
+                    "takes more than 5 hours of the machine's time, expected less: a run counts it in "
+                    "femtoseconds, in 64 bits");
+  }
+  for (Cycle at = first; at <= limit_ && at != kNever; at = next_visited()) visit(at);
 }
 
 void ClockDomain::lower_limit(Femtoseconds time) {

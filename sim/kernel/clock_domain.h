@@ -45,7 +45,7 @@ class ClockDomain {
   void add(Unit& unit, std::uint32_t number);
 
   // Runs every cycle up to and including `last`, or until nothing is left to do; a push across the boundary
-  // to another domain may lower `last` on the way.
+  // to another domain may lower `last` on the way. UserError where the next cycle is later than kMostTime.
   void run(Cycle last);
   void lower_limit(Femtoseconds time);  // run() stops after the last cycle at or before `time`
 

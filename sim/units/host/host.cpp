@@ -2,6 +2,13 @@
 
 namespace splatscope::sim {
 
+Femtoseconds Host::pixel_time(const Machine::Host& spec, Femtoseconds period, int pixel_bytes) {
+  const int reads = (pixel_bytes + spec.uncached_read_bytes - 1) / spec.uncached_read_bytes;
+  const double nanoseconds = reads * spec.uncached_read_nanoseconds + spec.division_nanoseconds;
+  const int writes = (pixel_bytes + spec.write_bytes_per_clock - 1) / spec.write_bytes_per_clock;
+  return femtoseconds_of(nanoseconds) + static_cast<Femtoseconds>(writes) * period;
+}
+
 Host::Host(std::string name, const Machine::Host& spec, Femtoseconds period, const Trace& trace,
            const Frame& frame)
     : Unit(std::move(name)), spec_(spec), period_(period), trace_(trace), frame_(frame) {}
@@ -72,10 +79,7 @@ Step Host::normalize(Cycle now) {
   }
   --pixels_left_;
   ++pixels_;
-  const int reads = (frame_.pixel_bytes + spec_.uncached_read_bytes - 1) / spec_.uncached_read_bytes;
-  const double nanoseconds = reads * spec_.uncached_read_nanoseconds + spec_.division_nanoseconds;
-  const int writes = (frame_.pixel_bytes + spec_.write_bytes_per_clock - 1) / spec_.write_bytes_per_clock;
-  pixel_end_ += femtoseconds_of(nanoseconds) + static_cast<Femtoseconds>(writes) * period_;
+  pixel_end_ += pixel_time(spec_, period_, frame_.pixel_bytes);
   ready_ = cycles_of(pixel_end_, period_);
   event(ready_, pixels_left_);
   return busy(ready_);

@@ -16,6 +16,9 @@ namespace splatscope::sim {
 // overlap.
 class Host final : public Unit {
  public:
+  // To read back, divide and write one pixel of so many bytes. `period`: of the bus clock.
+  static Femtoseconds pixel_time(const Machine::Host& spec, Femtoseconds period, int pixel_bytes);
+
   // `period`: of the bus clock. `pixels`: of the frame; `pixel_bytes`: of one.
   struct Frame {
     std::uint64_t pixels = 0;
