@@ -46,8 +46,9 @@ isa::Program load(const Trace& trace, std::uint32_t program) {
   return isa::load(trace.programs[program].text, trace.programs[program].name);
 }
 
-void check_work(const DrawJob& job) {
-  const DrawWork& work = *job.work;
+}  // namespace
+
+bool adds_up(const DrawWork& work, const Draw& draw) {
   std::uint64_t quads = 0, quads_passed = 0, vertices = 0;
   for (std::size_t i = 0; i < work.triangles.size(); i = work.next_recorded(i)) {
     quads += work.triangles[i].quad_count;
@@ -60,14 +61,9 @@ void check_work(const DrawJob& job) {
     passed += quad.passed != 0;
   }
   if (work.samples_only) vertices = 0;
-  const bool fits = quads == work.quads.size() && quads_passed == passed &&
-                    vertices == work.shaded_vertices.size() && blocks == work.texel_blocks.size() &&
-                    work.triangles.size() == job.draw->index_count / 3;
-  if (!fits)
-    throw ModelError("the work record of command " + std::to_string(job.work->command) + " does not add up");
+  return quads == work.quads.size() && quads_passed == passed && vertices == work.shaded_vertices.size() &&
+         blocks == work.texel_blocks.size() && work.triangles.size() == draw.index_count / 3;
 }
-
-}  // namespace
 
 void count_items(DrawJob& job) {
   job.triangles_set_up = job.colored_quads = 0;
@@ -153,7 +149,8 @@ void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice) {
   if (work.command != job.command)
     throw ModelError("command " + std::to_string(job.command) + " of the trace has no work record");
   job.work = &work;
-  check_work(job);
+  if (!adds_up(work, *job.draw))
+    throw ModelError("the work record of command " + std::to_string(work.command) + " does not add up");
   job.triangles_clipped = static_cast<std::uint64_t>(std::ranges::count_if(
       work.triangles, [](const TriangleWork& triangle) { return triangle.pieces > 1; }));
   if (!work.samples_only) count_items(job);  // the units do; an estimate does not look at these

@@ -40,6 +40,9 @@ Needs needs_of(const Trace& trace);
 // least 1.
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec);
 
+// Whether the counts of a work record agree with each other and with its draw.
+bool adds_up(const DrawWork& work, const Draw& draw);
+
 // Counts in a job what its work holds of triangles to set up and of coloured quads.
 void count_items(DrawJob& job);
 

@@ -62,6 +62,8 @@ void copy_fields(const QuadWork& from, QuadWork& to) {
   to.texel_block_count = from.texel_block_count;
 }
 
+constexpr std::size_t kHeaderBytes = 56;  // of a file of the cache
+
 using Sweeps = SweepFiles;
 using WorkCaches = SweepFiles;
 
@@ -194,47 +196,109 @@ TEST_F(WorkCaches, WhatIsCutShortIsNotTaken) {
   }
 }
 
-// The magic, the size and the checksum are right, and what follows them is not a work stream.
+// The magic, the key, the size and the checksum are right, and what follows them is not a work stream.
 TEST_F(WorkCaches, WhatIsOfAnotherLayoutIsNotTaken) {
   const WorkCache cache(folder / "cache");
   cache.write("k", {});
-  const std::string magic = bytes_of(cache.path_of("k")).substr(0, 8);
-  const std::string no_draws = bytes_of(cache.path_of("k")).substr(24);
+  const std::string magic_and_key = bytes_of(cache.path_of("k")).substr(0, 40);
+  const std::string no_draws = bytes_of(cache.path_of("k")).substr(kHeaderBytes);
   ASSERT_GE(no_draws.size(), sizeof(std::uint64_t));
   const std::string draws_missing = no_draws.substr(0, no_draws.size() - 8) + std::string(8, '\x11');
   WorkStream stream;
   for (const std::string& body : {std::string(), std::string("x"), no_draws + "x", draws_missing}) {
     const std::uint64_t header[] = {body.size(), XXH64(body.data(), body.size(), 0)};
     std::ofstream(cache.path_of("k"), std::ios::binary)
-        << magic << std::string(reinterpret_cast<const char*>(header), sizeof header) << body;
+        << magic_and_key << std::string(reinterpret_cast<const char*>(header), sizeof header) << body;
     EXPECT_EQ(cache.read("k", trace, stream), WorkCache::Found::damaged) << body.size() << " bytes";
   }
 }
 
-TEST_F(WorkCaches, WhatLiesOutsideOfTheFrameIsNotTaken) {
+TEST_F(WorkCaches, WhatCannotBeOfTheTraceIsNotTaken) {
   const WorkCache cache(folder / "cache");
   const Rendered rendered = render(trace, {});
   ASSERT_FALSE(rendered.work[0].clear_tiles.empty());
+  using Found = WorkCache::Found;
   const auto found_with = [&](auto change) {
     WorkStream stream{rendered.work, rendered.counters};
     change(stream.work[0]);
     cache.write("k", stream);
     return cache.read("k", trace, stream);
   };
-  using Found = WorkCache::Found;
   EXPECT_EQ(found_with([](DrawWork&) {}), Found::yes);
-  EXPECT_EQ(found_with([](DrawWork& work) { work.sampled_runs_apart = 3; }), Found::damaged);
-  EXPECT_EQ(found_with([](DrawWork& work) { work.sampled_runs_apart = 0; }), Found::damaged);
-  EXPECT_EQ(found_with([](DrawWork& work) { work.clear_tiles[0].tile = 16 * 16; }), Found::damaged);
-  EXPECT_EQ(found_with([](DrawWork& work) { work.quads[0].x = 32; }), Found::damaged);
-  EXPECT_EQ(found_with([](DrawWork& work) { work.quads[0].y = 32; }), Found::damaged);
+  using Change = void (*)(DrawWork&);
+  const Change of_draws[] = {
+      [](DrawWork& work) { work.sampled_runs_apart = 3; },
+      [](DrawWork& work) { work.sampled_runs_apart = 0; },
+      [](DrawWork& work) { ++work.command; },
+      [](DrawWork& work) { work.triangles.pop_back(); },
+      [](DrawWork& work) { work.shaded_vertices.pop_back(); },
+      [](DrawWork& work) { work.quads.pop_back(); },
+      [](DrawWork& work) { work.texel_blocks.push_back(0); },
+      [](DrawWork& work) { work.clear_tiles[0].tile = 16 * 16; },
+      [](DrawWork& work) { work.clear_tiles.back().triangle = 0xffffff; },
+      [](DrawWork& work) { work.quads[0].x = 32; },
+      [](DrawWork& work) { work.quads[0].y = 32; },
+      [](DrawWork& work) { work.quads[0].covered = work.quads[0].passed = 16; },
+      [](DrawWork& work) { work.quads[0].covered = 1, work.quads[0].passed = 3; },
+      [](DrawWork& work) {
+        work.quads[0].texel_block_count = 5;
+        work.texel_blocks.resize(work.texel_blocks.size() + 5);
+      },
+  };
+  for (std::size_t i = 0; i < std::size(of_draws); ++i)
+    EXPECT_EQ(found_with(of_draws[i]), Found::damaged) << i;
+  const auto triangle_with = [&](auto change) {
+    return found_with([&](DrawWork& work) {
+      change(*std::ranges::find_if(work.triangles, [](const TriangleWork& t) { return t.quads_passed > 0; }));
+    });
+  };
+  EXPECT_EQ(triangle_with([](TriangleWork& t) { t.pieces = 9; }), Found::damaged);
+  EXPECT_EQ(triangle_with([](TriangleWork& t) { t.pieces = 0, t.tile_count = 0; }), Found::damaged);
+  EXPECT_EQ(triangle_with([](TriangleWork& t) { t.tile_count = 8 * 8 + 1; }), Found::damaged);
+  EXPECT_EQ(triangle_with([](TriangleWork& t) { t.outcome = TriangleOutcome{6}; }), Found::damaged);
+  EXPECT_EQ(found_with([](DrawWork& work) {  // their sum is right
+              work.triangles[0].new_vertices = 4;
+              work.shaded_vertices.resize(work.shaded_vertices.size() + 1);
+            }),
+            Found::damaged);
+
+  WorkStream stream{rendered.work, rendered.counters};
+  stream.work.pop_back();
+  cache.write("k", stream);
+  EXPECT_EQ(cache.read("k", trace, stream), Found::damaged);
+}
+
+TEST_F(WorkCaches, AFileUnderAnothersNameIsNotTaken) {
+  const WorkCache cache(folder / "cache");
+  const Rendered rendered = render(trace, {});
+  cache.write("a", {rendered.work, rendered.counters});
+  std::filesystem::copy(cache.path_of("a"), cache.path_of("b"));
+  WorkStream stream;
+  EXPECT_EQ(cache.read("a", trace, stream), WorkCache::Found::yes);
+  EXPECT_EQ(cache.read("b", trace, stream), WorkCache::Found::damaged);
+}
+
+TEST_F(WorkCaches, AFolderInTheFilesPlaceIsAUsersError) {
+  const WorkCache cache(folder / "cache");
+  std::filesystem::create_directory(cache.path_of("k"));
+  WorkStream stream;
+  try {
+    cache.read("k", trace, stream);
+    ADD_FAILURE() << "a folder is read";
+  } catch (const UserError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with(cache.path_of("k").string() + ": ")) << error.what();
+  }
 }
 
 // No byte that nobody has written, so of whatever memory the stream stands in.
 TEST_F(WorkCaches, TheSameStreamIsTheSameBytes) {
   const WorkCache cache(folder / "cache");
   const Rendered rendered = render(trace, {});
-  cache.write("a", {rendered.work, rendered.counters});
+  const auto bytes_with = [&](const std::vector<DrawWork>& work) {
+    cache.write("k", {work, rendered.counters});
+    return bytes_of(cache.path_of("k"));
+  };
+  const std::string bytes = bytes_with(rendered.work);
   std::vector<DrawWork> elsewhere = rendered.work;
   const auto copy_into = [](const auto& from, auto& to) {  // value by value, into memory that is not zero
     std::memset(static_cast<void*>(to.data()), 0xff, to.size() * sizeof to[0]);
@@ -244,12 +308,10 @@ TEST_F(WorkCaches, TheSameStreamIsTheSameBytes) {
     copy_into(rendered.work[i].triangles, elsewhere[i].triangles);
     copy_into(rendered.work[i].quads, elsewhere[i].quads);
   }
-  cache.write("b", {elsewhere, rendered.counters});
-  EXPECT_TRUE(bytes_of(cache.path_of("a")) == bytes_of(cache.path_of("b")));
+  EXPECT_TRUE(bytes == bytes_with(elsewhere));
   WorkStream stream;
-  ASSERT_EQ(cache.read("b", trace, stream), WorkCache::Found::yes);
-  cache.write("c", stream);
-  EXPECT_TRUE(bytes_of(cache.path_of("a")) == bytes_of(cache.path_of("c")));
+  ASSERT_EQ(cache.read("k", trace, stream), WorkCache::Found::yes);
+  EXPECT_TRUE(bytes == bytes_with(stream.work));
 }
 
 TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {

@@ -5,6 +5,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -13,22 +14,36 @@
 #include <tuple>
 #include <type_traits>
 
+#include "model/error.h"
+#include "model/primitive/primitive.h"
+#include "sim/draw_jobs.h"
+#include "sim/observe/tile_cycles.h"
 #include "traces/output_files.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::studies {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x334b524f574c5053;  // "SPLWORK3": changes with the layout
+constexpr std::uint64_t kMagic = 0x344b524f574c5053;  // "SPLWORK4": changes with the layout
+
+constexpr std::size_t kKeyDigits = 32;
+using Key = std::array<char, kKeyDigits>;
 
 struct Header {
   std::uint64_t magic = kMagic;
+  Key key{};                   // a file copied to another's name is not that one
   std::uint64_t size = 0;      // bytes after the header
   std::uint64_t checksum = 0;  // of them
 };
 
 std::uint64_t hash_of(const void* bytes, std::size_t size, std::uint64_t seed) {
   return XXH64(bytes, size, seed);
+}
+
+Key key_of(std::string_view digits) {
+  Key key{};
+  std::ranges::copy(digits.substr(0, kKeyDigits), key.begin());
+  return key;
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
@@ -43,7 +58,11 @@ std::string bytes_of(const std::filesystem::path& path) {
 // All of them by name: one more does not compile until it is here too.
 template <class Record>
 auto fields_of(Record& record) {
-  if constexpr (std::is_same_v<std::remove_const_t<Record>, TriangleWork>) {
+  if constexpr (std::is_same_v<std::remove_const_t<Record>, DrawWork>) {
+    // All but the last: whole records are kept, which serve every fidelity.
+    auto& [command, vertices, triangles, quads, blocks, clear_tiles, runs_apart, samples_only] = record;
+    return std::tie(command, vertices, triangles, quads, blocks, clear_tiles, runs_apart);
+  } else if constexpr (std::is_same_v<std::remove_const_t<Record>, TriangleWork>) {
     auto& [quads, passed, tiles, vertices, pieces, outcome] = record;
     return std::tie(quads, passed, tiles, vertices, pieces, outcome);
   } else {
@@ -58,13 +77,17 @@ auto fields_of(Record& record) {
 template <class T>
 constexpr bool kAsItStands = std::has_unique_object_representations_v<T>;
 
+// At least; a vector has its count and may have no more.
 template <class T>
-std::size_t stored_bytes() {
+std::size_t stored_bytes(const std::vector<T>&) {
+  return sizeof(std::uint64_t);
+}
+template <class T>
+std::size_t stored_bytes(const T& value) {
   if constexpr (kAsItStands<T>) {
-    return sizeof(T);
+    return sizeof value;
   } else {
-    T record;
-    return std::apply([](const auto&... field) { return (sizeof field + ...); }, fields_of(record));
+    return std::apply([](const auto&... field) { return (stored_bytes(field) + ...); }, fields_of(value));
   }
 }
 
@@ -102,7 +125,7 @@ class Reader {
   }
   template <class T>
   void take(std::vector<T>& values) {
-    values.resize(take_count(stored_bytes<T>()));
+    values.resize(take_count(stored_bytes(T{})));
     if constexpr (kAsItStands<T>) {
       const std::size_t bytes = values.size() * sizeof(T);
       if (bytes > 0) std::memcpy(values.data(), next(bytes), bytes);
@@ -110,6 +133,9 @@ class Reader {
       for (T& record : values) std::apply([&](auto&... field) { (take(field), ...); }, fields_of(record));
     }
   }
+  bool at_end() const { return text_.empty(); }
+
+ private:
   // Of items that have at least so many bytes each: no more than there is text for.
   std::size_t take_count(std::size_t bytes_each) {
     std::uint64_t count = 0;
@@ -117,9 +143,6 @@ class Reader {
     if (count > text_.size() / bytes_each) throw std::out_of_range("work stream");
     return count;
   }
-  bool at_end() const { return text_.empty(); }
-
- private:
   const char* next(std::size_t size) {
     if (size > text_.size()) throw std::out_of_range("work stream");
     const char* here = text_.data();
@@ -129,16 +152,53 @@ class Reader {
   std::string_view text_;
 };
 
-// Whether all that it names lies in the frame of `trace`.
-bool fits(const DrawWork& work, const Trace& trace) {
-  const auto in_frame = [&](const QuadWork& quad) {
-    return 2u * quad.x < trace.width && 2u * quad.y < trace.height;
+bool fits(const QuadWork& quad, const Trace& trace) {
+  constexpr int kAllPixels = 15, kMostBlocks = 4;
+  return 2u * quad.x < trace.width && 2u * quad.y < trace.height && quad.covered <= kAllPixels &&
+         (quad.passed & ~quad.covered) == 0 && quad.texel_block_count <= kMostBlocks;
+}
+
+bool fits(const TriangleWork& triangle, std::span<const QuadWork> quads, const Trace& trace) {
+  const auto tiles = [](std::uint32_t pixels) -> std::uint64_t {
+    return (pixels + sim::TileCycles::kTile - 1) / sim::TileCycles::kTile;
   };
-  const auto is_tile = [&](const ClearTile& each) {
-    return each.tile < frame_tiles(trace.width) * frame_tiles(trace.height);
-  };
-  return std::has_single_bit(work.sampled_runs_apart) && std::ranges::all_of(work.quads, in_frame) &&
-         std::ranges::all_of(work.clear_tiles, is_tile);
+  return triangle.new_vertices <= 3 && triangle.pieces <= primitive::kMaxPieces &&
+         triangle.outcome <= TriangleOutcome::back_facing &&
+         triangle.tile_count <= triangle.pieces * tiles(trace.width) * tiles(trace.height) &&
+         (triangle.pieces != 0 || quads.empty()) &&
+         std::ranges::count_if(quads, [](const QuadWork& quad) { return quad.passed != 0; }) ==
+             triangle.quads_passed;
+}
+
+bool fits(const ClearTile& clear, const DrawWork& work, const Trace& trace) {
+  return clear.triangle < work.triangles.size() &&
+         clear.tile < frame_tiles(trace.width) * frame_tiles(trace.height);
+}
+
+// Whether `work` can be that of `draw` in `trace`.
+bool fits(const DrawWork& work, const Draw& draw, const Trace& trace) {
+  if (!std::has_single_bit(work.sampled_runs_apart) || !sim::adds_up(work, draw)) return false;
+  std::span<const QuadWork> left = work.quads;
+  for (const TriangleWork& triangle : work.triangles) {
+    if (!fits(triangle, left.first(triangle.quad_count), trace)) return false;
+    left = left.subspan(triangle.quad_count);
+  }
+  return std::ranges::all_of(work.quads, [&](const QuadWork& quad) { return fits(quad, trace); }) &&
+         std::ranges::all_of(work.clear_tiles,
+                             [&](const ClearTile& clear) { return fits(clear, work, trace); }) &&
+         std::ranges::is_sorted(work.clear_tiles, {}, &ClearTile::triangle);
+}
+
+// Whether there is a record for each draw of `trace`, in order.
+bool fits(const WorkStream& stream, const Trace& trace) {
+  auto work = stream.work.begin();
+  for (std::size_t command = 0; command < trace.commands.size(); ++command) {
+    const Draw* draw = std::get_if<Draw>(&trace.commands[command]);
+    if (!draw) continue;
+    if (work == stream.work.end() || work->command != command || !fits(*work, *draw, trace)) return false;
+    ++work;
+  }
+  return work == stream.work.end();
 }
 
 // As `write` has it; throws std::out_of_range where the text is not that, or not of `trace`.
@@ -146,18 +206,8 @@ WorkStream stream_of(std::string_view body, const Trace& trace) {
   WorkStream stream;
   Reader reader(body);
   reader.take(stream.counters);
-  stream.work.resize(reader.take_count(sizeof(std::uint32_t)));
-  for (DrawWork& work : stream.work) {
-    reader.take(work.command);
-    reader.take(work.sampled_runs_apart);
-    reader.take(work.shaded_vertices);
-    reader.take(work.triangles);
-    reader.take(work.quads);
-    reader.take(work.texel_blocks);
-    reader.take(work.clear_tiles);
-    if (!fits(work, trace)) throw std::out_of_range("work stream");
-  }
-  if (!reader.at_end()) throw std::out_of_range("work stream");
+  reader.take(stream.work);
+  if (!reader.at_end() || !fits(stream, trace)) throw std::out_of_range("work stream");
   return stream;
 }
 
@@ -189,13 +239,16 @@ std::filesystem::path WorkCache::path_of(const std::string& key) const {
 }
 
 WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, WorkStream& stream) const {
-  if (!std::filesystem::exists(path_of(key))) return Found::no;
-  const std::string bytes = bytes_of(path_of(key));
+  const std::filesystem::path path = path_of(key);
+  if (!std::filesystem::exists(path)) return Found::no;
+  if (!std::filesystem::is_regular_file(path))
+    throw UserError(path.string(), 0, "stands in the place of a file of the cache, expected that or nothing");
+  const std::string bytes = bytes_of(path);
   Header header;
   if (bytes.size() < sizeof header) return Found::damaged;
   std::memcpy(&header, bytes.data(), sizeof header);
   const std::string_view body = std::string_view(bytes).substr(sizeof header);
-  if (header.magic != kMagic || header.size != body.size() ||
+  if (header.magic != kMagic || header.key != key_of(key) || header.size != body.size() ||
       header.checksum != hash_of(body.data(), body.size(), 0))
     return Found::damaged;
   try {
@@ -209,19 +262,10 @@ WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, Wor
 void WorkCache::write(const std::string& key, const WorkStream& stream) const {
   Writer body;
   body.add(stream.counters);
-  body.add(std::uint64_t{stream.work.size()});
-  for (const DrawWork& work : stream.work) {
-    body.add(work.command);
-    body.add(work.sampled_runs_apart);
-    body.add(work.shaded_vertices);
-    body.add(work.triangles);
-    body.add(work.quads);
-    body.add(work.texel_blocks);
-    body.add(work.clear_tiles);
-  }
+  body.add(stream.work);
   Writer file;
   const std::string& text = body.text();
-  file.add(Header{kMagic, text.size(), hash_of(text.data(), text.size(), 0)});
+  file.add(Header{kMagic, key_of(key), text.size(), hash_of(text.data(), text.size(), 0)});
   traces::write_file(path_of(key), file.text() + text);
 }
 

@@ -28,8 +28,8 @@ class WorkCache {
   explicit WorkCache(std::filesystem::path folder);
 
   enum class Found { yes, no, damaged };
-  // The stream of `key`, checked against its checksum and the frame of `trace`. `damaged`: what stands there
-  // is of another format, cut short or changed; the caller computes it again.
+  // The stream of `key`, checked against its checksum and `trace`. `damaged`: what stands there is of another
+  // format or key, cut short or changed; the caller computes it again. UserError where it is no file.
   Found read(const std::string& key, const Trace& trace, WorkStream& stream) const;
   // Appears whole or not at all.
   void write(const std::string& key, const WorkStream& stream) const;
