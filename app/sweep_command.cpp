@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "studies/json_text.h"
 #include "studies/run_files.h"
 #include "studies/sweep.h"
 #include "traces/output_files.h"
@@ -55,7 +56,7 @@ void run(const Options& options, bool quiet) {
                                                   running.callback(), before_work);
   running.clear();
   traces::write_file(folder->path() / "results.json",
-                     studies::results_of(sweep, machine, fidelity).dump(1) + "\n");
+                     studies::json_text(studies::results_of(sweep, machine, fidelity), 1) + "\n");
   print(sweep);
   fmt::print("{:.1f} s; results.json in {}\n", sweep.host_seconds, options.out);
 }

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_invoke.h>
 
 #include "model/isa/program.h"
+#include "studies/json_text.h"
 #include "studies/report/run_report.h"
 #include "studies/roofline.h"
 #include "studies/run_files.h"
@@ -226,6 +227,7 @@ void write_run(const Input& input, const Machine& machine, Fidelity fidelity, co
   nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
   const std::vector<std::string> files = result_names(input, run);
   results["files"] = files;
+  const std::string text = json_text(results, 1) + "\n";
   const Image picture = picture_of(run.rendered.frame);
   remove_earlier_results(folder, files);
   // Side by side: to compress them takes longer than many a frame.
@@ -239,7 +241,7 @@ void write_run(const Input& input, const Machine& machine, Fidelity fidelity, co
         for (const HeatMap& map : run.heat_maps) write_exr(map.image, folder / (map.name + ".exr"), "Y");
       },
       [&] { run_report(input, machine, run, results).write(folder / "report.html"); });
-  traces::write_file(folder / "results.json", results.dump(1) + "\n");
+  traces::write_file(folder / "results.json", text);
 }
 
 }  // namespace splatscope::studies

@@ -13,6 +13,7 @@
 #include "model/isa/register_names.h"
 #include "model/pixel/pixel_program.h"
 #include "model/vertex/vertex_program.h"
+#include "studies/json_text.h"
 #include "studies/shader_case.h"
 
 namespace splatscope::studies {
@@ -113,8 +114,7 @@ ShaderResult run_shader_case(std::string_view text, Arithmetic arithmetic) {
   } catch (const UserError& error) {
     result["error"] = place_and_rule(error);
   }
-  // A message may quote half a character.
-  return {result.dump(-1, ' ', false, ordered_json::error_handler_t::replace), is_object};
+  return {json_text(result), is_object};  // a message may quote half a character
 }
 
 void run_shader_batch(std::istream& cases, std::string_view file, Arithmetic arithmetic,

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/error.h"
+#include "studies/json_text.h"
 #include "studies/measure.h"
 #include "studies/report/configuration.h"
 #include "traces/output_files.h"
@@ -68,7 +69,7 @@ void Findings::write(double host_seconds) {
   for (const std::string_view name : machine::built_in_names())
     add_configuration(report_, machine::load(name));
   report_.write(folder_.path() / "report.html");
-  traces::write_file(folder_.path() / "results.json", results_.dump(1) + "\n");
+  traces::write_file(folder_.path() / "results.json", json_text(results_, 1) + "\n");
   say(fmt::format("{:.1f} s; results.json, report.html and pictures in {}\n", host_seconds,
                   folder_.path().string()));
 }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "model/error.h"
+#include "studies/json_text.h"
 #include "studies/measure.h"
 #include "studies/processes.h"
 #include "studies/run_results.h"
@@ -151,7 +152,7 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
     const WorkStream stream = work_of(trace, same.machine, cache, sweep);
     const auto time_one = [&](std::size_t i) {
       const Machine timed = machine_of(machine, sweep.points[same.points[i]]);
-      return timing_json(time_frame(trace, stream.work, timed, fidelity)).dump();
+      return json_text(timing_json(time_frame(trace, stream.work, timed, fidelity)));
     };
     const auto answers =
         in_processes(same.points.size(), std::thread::hardware_concurrency(), time_one, [&](std::size_t n) {

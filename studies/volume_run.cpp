@@ -7,6 +7,7 @@
 
 #include "kernels/reference/volume/fast_volume.h"
 #include "studies/image_io.h"
+#include "studies/json_text.h"
 #include "studies/measure.h"
 #include "studies/volume_pictures.h"
 #include "traces/output_files.h"
@@ -51,7 +52,7 @@ std::string run_volume(const traces::VolumeScene& scene, Precision precision,
                                            {{"classify_seconds", classify_seconds},
                                             {"frame_seconds", frame_seconds},
                                             {"frame_processor_seconds", processor_seconds}}}};
-  traces::write_file(folder / "results.json", results.dump(2) + "\n");
+  traces::write_file(folder / "results.json", json_text(results, 2) + "\n");
   return fmt::format(
       "{}: {} x {} x {} voxels, {} of them empty\n"
       "{} splats in {} sheets, {} left out\n"

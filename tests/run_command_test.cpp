@@ -51,6 +51,24 @@ TEST(CommandLine, RunWritesItsResults) {
             std::string::npos);
 }
 
+// Names of files are bytes, and JSON is UTF-8: what it cannot hold is replaced.
+TEST(CommandLine, ASceneMayHaveANameThatIsNoText) {
+  const ScratchFolder folder;
+  const std::string name = "sc\xe9ne.toml", shown = "sc\xef\xbf\xbdne";
+  folder.file(name, kSmallScene);
+  const auto input_of = [&](const char* out) -> std::string {
+    return nlohmann::json::parse(text_of(folder.path() / out / "results.json"))["input"];
+  };
+  const Outcome ran = run_program({"run", name, "--fidelity", "throughput", "--out", "a"}, folder.path());
+  EXPECT_EQ(ran.status, 0) << ran.error;
+  EXPECT_EQ(input_of("a"), shown);
+  const Outcome swept =
+      run_program({"sweep", name, "--fidelity", "throughput", "--sweep", "vertex.units=1,2", "--out", "b"},
+                  folder.path());
+  EXPECT_EQ(swept.status, 0) << swept.error;
+  EXPECT_EQ(input_of("b"), shown);
+}
+
 TEST(CommandLine, RunWritesATimelineAndCounters) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);

@@ -137,6 +137,21 @@ TEST(Timeline, EndsWellWhereItIsCutShort) {
   EXPECT_EQ(kNever, observe(7, {}).cut_at);
 }
 
+std::string timeline_of(const RandomTrace& made, const Timeline::Window& window) {
+  std::ostringstream text;
+  Timeline timeline(text, made.trace, window);
+  Observer* const observers[] = {&timeline};
+  simulate(made.trace, made.work, Machine{}, Scheduler::skip_ahead, {}, observers);
+  return text.str();
+}
+
+// A trace may name its programs so; JSON is UTF-8.
+TEST(Timeline, ANameMayHoldAnyBytes) {
+  RandomTrace made = testing::simple_trace(20);
+  for (ShaderText& program : made.trace.programs) program.name = "\"caf\xe9\"\n";
+  EXPECT_TRUE(cycles_of(timeline_of(made, {})).at("commands").contains("draw: \"caf\xef\xbf\xbd\"\n"));
+}
+
 TEST(TimeSeries, RowsAddUpToTheResult) {
   const Observed run = observe(11, {}, 50);
   std::istringstream in(run.series);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "sim/machine.h"
@@ -15,11 +16,11 @@ std::string field(const char* name, std::uint64_t value) {
   return std::string(",\"") + name + "\":" + std::to_string(value);
 }
 
-// Names are of units, channels and shaders. A shader's comes with the trace: what JSON would trip over goes.
+// Names are of units, channels and shaders. A shader's comes with the trace and may hold any bytes: those
+// that are no UTF-8 are replaced.
 std::string quoted(const std::string& name) {
-  std::string out = "\"";
-  for (const char c : name) out += static_cast<unsigned char>(c) < 0x20 || c == '"' || c == '\\' ? '_' : c;
-  return out + '"';
+  using nlohmann::json;
+  return json(name).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 constexpr std::size_t kBufferBytes = 1 << 16;
