@@ -56,13 +56,18 @@ struct Result {
   std::vector<Cycle> command_ends;   // core cycle at which each command of the trace was done
   std::vector<Cycle> frame_cycles;   // of each frame (`frame_ends`); they add up to `cycles`
 
-  double seconds_of(Cycle some) const {
-    return seconds * (static_cast<double>(some) / static_cast<double>(cycles));
+  double seconds_of(Cycle some) const { return seconds * share(some); }
+  double share(Cycle some) const {
+    return cycles == 0 ? 0 : static_cast<double>(some) / static_cast<double>(cycles);
   }
-  double share(Cycle some) const { return static_cast<double>(some) / static_cast<double>(cycles); }
   // The unit that was busy for the largest share of the run: its bottleneck.
   const UnitBooks& busiest() const { return *std::ranges::max_element(units, {}, &UnitBooks::busy); }
-  double frames_per_second() const { return static_cast<double>(frame_cycles.size()) / seconds; }
+  // 0 where they take no time.
+  double frames_per_second() const { return rate(static_cast<double>(frame_cycles.size()), seconds); }
+  double frames_per_second(Cycle one_frame) const { return rate(1, seconds_of(one_frame)); }
+
+ private:
+  static double rate(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
 };
 
 // The books of a unit of `machine` with the names of the units in its way.

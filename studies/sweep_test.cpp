@@ -120,6 +120,24 @@ TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
             run_sweep(file, machine, swept, Fidelity::throughput, {}).points[1].results);
 }
 
+// JSON holds no infinity.
+TEST(TimingJson, AFrameOfNoTimeHasNoRate) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine::set(machine, "host.command_nanoseconds=0");
+  Trace trace;
+  trace.width = trace.height = 4;
+  const auto frames_of = [&](std::vector<Command> commands) {
+    trace.commands = std::move(commands);
+    return timing_json(time_frame(trace, {}, machine, Fidelity::throughput))["frames"];
+  };
+  const nlohmann::ordered_json nothing = {{"cycles", 0}, {"milliseconds", 0.0}, {"frames_per_second", 0.0}};
+  EXPECT_EQ(frames_of({}), nlohmann::ordered_json::array({nothing}));
+  const auto two = frames_of({Clear{}, Present{}, Present{}});
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_GT(two[0]["frames_per_second"], 0);
+  EXPECT_EQ(two[1], nothing);
+}
+
 TEST_F(Sweeps, WrongInputIsAUsersError) {
   EXPECT_THROW(swept_parameter("vertex.units"), UserError);
   EXPECT_THROW(swept_parameter("=1,2"), UserError);

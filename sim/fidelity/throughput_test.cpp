@@ -110,6 +110,15 @@ TEST(Throughput, WhatIfAUnitDividesPixels) {
 }
 
 // The same units, under the same names, are there and left out.
+TEST(Throughput, NoWorkTakesNoTime) {
+  const Result result = estimate_throughput({}, {}, Machine{});
+  EXPECT_EQ(result.cycles, 0u);
+  EXPECT_EQ(result.seconds_of(0), 0);
+  EXPECT_EQ(result.share(0), 0);
+  EXPECT_EQ(result.frames_per_second(), 0);
+  EXPECT_EQ(result.frames_per_second(0), 0);
+}
+
 TEST(Throughput, KnowsTheUnitsThatATraceNeeds) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

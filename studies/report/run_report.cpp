@@ -42,9 +42,9 @@ void add_picture(Report& report, const FrameRun& run) {
 void add_times(Report& report, const sim::Result& timing) {
   std::vector<std::vector<std::string>> rows;
   for (const sim::Cycle cycles : timing.frame_cycles) {
-    const double seconds = timing.seconds_of(cycles);
     rows.push_back({fmt::format("{}", rows.size() + 1), grouped(cycles),
-                    fmt::format("{:.3f}", 1000 * seconds), fmt::format("{:.2f}", 1 / seconds)});
+                    fmt::format("{:.3f}", 1000 * timing.seconds_of(cycles)),
+                    fmt::format("{:.2f}", timing.frames_per_second(cycles))});
   }
   const sim::UnitBooks& busiest = timing.busiest();
   report.table(fmt::format("Time. {} was the busiest unit, {:.0f} % of the cycles.", busiest.name,
