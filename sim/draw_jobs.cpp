@@ -28,18 +28,27 @@ class Allocator {
       : alignment_(static_cast<std::uint64_t>(memory.row_bytes) * static_cast<std::uint64_t>(memory.banks) *
                    static_cast<std::uint64_t>(memory.channels)) {}
   std::uint32_t take(std::uint64_t bytes) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
     const std::uint64_t address = next_;
+    bytes_ += bytes;
     next_ += (bytes + alignment_ - 1) / alignment_ * alignment_;
-    if (next_ > std::numeric_limits<std::uint32_t>::max()) {
+    if (bytes_ > kMost)
       throw UserError("trace", 0,
                       "more than 4 GiB of buffers and textures, expected what a machine of 2002 can hold");
-    }
+    if (next_ > kMost)
+      throw UserError(
+          "trace", 0,
+          fmt::format("its surfaces, textures and buffers do not fit into 4 GiB, as each begins a "
+                      "row of all banks and channels, {} bytes, expected a smaller "
+                      "memory.row_bytes, memory.banks or memory.channels",
+                      alignment_));
     return static_cast<std::uint32_t>(address);
   }
 
  private:
   std::uint64_t alignment_;
   std::uint64_t next_ = 0;
+  std::uint64_t bytes_ = 0;  // taken, without what lies between
 };
 
 isa::Program load(const Trace& trace, std::uint32_t program) {

@@ -268,6 +268,22 @@ TEST(Simulate, ATimeThatCannotBeCountedIsAUsersError) {
   EXPECT_EQ(error_of([&] { expect_countable_time(pixels, machine); }), "");
 }
 
+TEST(Simulate, BuffersThatTheRowsSpreadBeyondAllAddressesAreAUsersError) {
+  Machine machine = machine::load("geforce4-ti4400");
+  for (const char* value : {"memory.row_bytes=65536", "memory.banks=64", "memory.channels=16"})
+    machine::set(machine, value);
+  Trace trace;
+  trace.width = trace.height = 4;
+  trace.buffers.resize(60, {MemoryPlace::video, std::vector<std::byte>(1)});
+  EXPECT_EQ(error_of([&] { lay_out(trace, machine); }), "");
+  trace.buffers.resize(70, trace.buffers[0]);
+  EXPECT_EQ(
+      error_of([&] { lay_out(trace, machine); }),
+      "trace: its surfaces, textures and buffers do not fit into 4 GiB, as each begins a row of all banks "
+      "and channels, 67108864 bytes, expected a smaller memory.row_bytes, memory.banks or "
+      "memory.channels");
+}
+
 // What the host does is just countable, and the clears are not.
 TEST(Simulate, ARunEndsWhereItsTimeCannotBeCounted) {
   Machine machine = machine::load("geforce4-ti4400");

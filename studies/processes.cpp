@@ -13,16 +13,19 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "model/error.h"
 #include "model/stop.h"
 
 namespace splatscope::studies {
 namespace {
 
-// Before each answer on the pipe.
+enum class Kind : std::uint8_t { answer, failure, user_error };
+
+// Before each text on the pipe.
 struct Head {
   std::uint64_t number = 0;
   std::uint64_t size = 0;
-  bool failed = false;
+  Kind kind = Kind::answer;
 };
 
 void write_all(int file, const void* data, std::size_t size) {
@@ -49,10 +52,16 @@ bool read_all(int file, void* data, std::size_t size) {
   return true;
 }
 
-void answer(int file, std::size_t number, const std::string& text, bool failed) {
-  const Head head{number, text.size(), failed};
+void say(int file, std::size_t number, const std::string& text, Kind kind) {
+  const Head head{number, text.size(), kind};
   write_all(file, &head, sizeof head);
   write_all(file, text.data(), text.size());
+}
+
+[[noreturn]] void fail(const std::string& text, Kind kind) {
+  if (kind != Kind::user_error) throw std::runtime_error(text);
+  const std::size_t colon = text.find(": ");  // as every user's error has it, behind the file and its line
+  throw UserError(text.substr(0, colon), 0, text.substr(colon + 2));
 }
 
 // What a child does: every `step`-th task.
@@ -60,9 +69,11 @@ void answer(int file, std::size_t number, const std::string& text, bool failed) 
                        const std::function<std::string(std::size_t)>& task) {
   for (std::size_t number = first; number < count; number += step) {
     try {
-      answer(file, number, task(number), false);
+      say(file, number, task(number), Kind::answer);
+    } catch (const UserError& error) {
+      say(file, number, error.what(), Kind::user_error);
     } catch (const std::exception& error) {
-      answer(file, number, error.what(), true);
+      say(file, number, error.what(), Kind::failure);
     }
   }
   ::_exit(0);
@@ -126,7 +137,7 @@ std::vector<std::string> in_processes(std::size_t count, std::size_t processes,
       if (read_all(open[i].fd, &head, sizeof head)) {
         text.resize(head.size);
         if (read_all(open[i].fd, text.data(), text.size())) {
-          if (head.failed) throw std::runtime_error(text);
+          if (head.kind != Kind::answer) fail(text, head.kind);
           answers[head.number] = std::move(text);
           ++answered;
           if (done) done(answered);

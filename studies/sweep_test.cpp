@@ -348,6 +348,12 @@ TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {
                               return "x";
                             }),
                std::runtime_error);
+  try {
+    in_processes(2, 2, [](std::size_t) -> std::string { throw UserError("a.toml", 3, "wrong: x"); });
+    ADD_FAILURE() << "a user's error is lost";
+  } catch (const UserError& error) {
+    EXPECT_STREQ(error.what(), "a.toml:3: wrong: x");
+  }
   EXPECT_THROW(in_processes(4, 2, [](std::size_t i) -> std::string { return i == 1 ? ::_exit(3), "" : "x"; }),
                std::runtime_error);
 }
