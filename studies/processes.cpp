@@ -1,5 +1,6 @@
 #include "studies/processes.h"
 
+#include <oneapi/tbb/global_control.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -64,9 +65,18 @@ void say(int file, std::size_t number, const std::string& text, Kind kind) {
   throw UserError(text.substr(0, colon), 0, text.substr(colon + 2));
 }
 
+// A child has none but the thread that forked it: no other may hold a lock of oneTBB then, which in the child
+// nobody would give back, and oneTBB must not believe in its threads there.
+void end_worker_threads() {
+  oneapi::tbb::task_scheduler_handle scheduler{oneapi::tbb::attach{}};
+  oneapi::tbb::finalize(scheduler, std::nothrow);
+}
+
 // What a child does: every `step`-th task.
 [[noreturn]] void work(int file, std::size_t first, std::size_t step, std::size_t count,
                        const std::function<std::string(std::size_t)>& task) {
+  using Control = oneapi::tbb::global_control;
+  const Control one_thread(Control::max_allowed_parallelism, 1);  // the other processes have the other cores
   for (std::size_t number = first; number < count; number += step) {
     try {
       say(file, number, task(number), Kind::answer);
@@ -117,6 +127,7 @@ std::vector<std::string> in_processes(std::size_t count, std::size_t processes,
                                       const std::function<void(std::size_t)>& done) {
   std::fflush(nullptr);  // or each child has a copy of what waits to be printed
   const std::size_t children_count = std::clamp<std::size_t>(processes, 1, std::max<std::size_t>(count, 1));
+  end_worker_threads();
   std::vector<std::unique_ptr<Child>> children;
   for (std::size_t i = 0; i < children_count; ++i)
     children.push_back(std::make_unique<Child>(i, children_count, count, task));

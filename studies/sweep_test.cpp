@@ -1,15 +1,20 @@
 #include "studies/sweep.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
 #include <unistd.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 
 #include "model/error.h"
 #include "studies/processes.h"
@@ -330,6 +335,33 @@ TEST_F(WorkCaches, TheSameStreamIsTheSameBytes) {
   WorkStream stream;
   ASSERT_EQ(cache.read("k", trace, stream), WorkCache::Found::yes);
   EXPECT_TRUE(bytes == bytes_with(stream.work));
+}
+
+std::size_t threads_of(::pid_t process) {
+  const std::filesystem::path threads = "/proc/" + std::to_string(process) + "/task";
+  return static_cast<std::size_t>(
+      std::distance(std::filesystem::directory_iterator(threads), std::filesystem::directory_iterator()));
+}
+
+// Whatever threads the library has begun before.
+TEST(Processes, ForkFromOneThreadAndWorkInOne) {
+  using Control = oneapi::tbb::global_control;
+  const Control two(Control::max_allowed_parallelism, 2);  // on a host with one core too
+  const auto work = [] {
+    oneapi::tbb::parallel_for(0, 100,
+                              [](int) { std::this_thread::sleep_for(std::chrono::microseconds(50)); });
+  };
+  in_processes(1, 1, [](std::size_t) { return std::string(); });
+  const std::size_t alone = threads_of(::getpid());  // a sanitizer may have one of its own
+  for (int i = 0; i < 1000 && threads_of(::getpid()) == alone; ++i) work();
+  EXPECT_GT(threads_of(::getpid()), alone);
+  const auto answers = in_processes(4, 2, [&](std::size_t) {
+    const std::size_t before = threads_of(::getpid());
+    work();
+    return fmt::format("{} more of {}", threads_of(::getpid()) - before, threads_of(::getppid()));
+  });
+  for (const std::string& answer : answers) EXPECT_EQ(answer, fmt::format("0 more of {}", alone));
+  work();
 }
 
 TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {
