@@ -152,6 +152,33 @@ TEST(Timeline, ANameMayHoldAnyBytes) {
   EXPECT_TRUE(cycles_of(timeline_of(made, {})).at("commands").contains("draw: \"caf\xef\xbf\xbd\"\n"));
 }
 
+TEST(Timeline, LongNamesAndManyCommandsDoNotMakeItLonger) {
+  RandomTrace made = testing::simple_trace(2);
+  for (ShaderText& program : made.trace.programs) {
+    program.name.clear();
+    for (int i = 0; i < 10000; ++i) program.name += "x\xc3\xa9";
+  }
+  const std::vector<Command> once = made.trace.commands;
+  const std::vector<DrawWork> work = made.work;
+  for (std::uint32_t copy = 1; copy < 100; ++copy) {
+    made.trace.commands.insert(made.trace.commands.end(), once.begin(), once.end());
+    for (DrawWork draw : work) {
+      draw.command += copy * static_cast<std::uint32_t>(once.size());
+      made.work.push_back(std::move(draw));
+    }
+  }
+  const std::string empty = timeline_of(made, {.most_bytes = 0});
+  const std::string text = timeline_of(made, {.most_bytes = 10000});
+  EXPECT_LE(text.size(), empty.size() + 10000);
+  const auto cycles = cycles_of(text);
+  EXPECT_GT(cycles.size(), 1u);  // tracks: of units too
+  ASSERT_TRUE(cycles.contains("commands"));
+  for (const auto& [name, sum] : cycles.at("commands")) {
+    EXPECT_LE(name.size(), 203u);
+    EXPECT_EQ(name.find("\xef\xbf\xbd"), std::string::npos) << name;
+  }
+}
+
 TEST(TimeSeries, RowsAddUpToTheResult) {
   const Observed run = observe(11, {}, 50);
   std::istringstream in(run.series);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <utility>
 
 #include "sim/machine.h"
 #include "sim/units/memory/memory_channel.h"
@@ -16,15 +17,24 @@ std::string field(const char* name, std::uint64_t value) {
   return std::string(",\"") + name + "\":" + std::to_string(value);
 }
 
-// Names are of units, channels and shaders. A shader's comes with the trace and may hold any bytes: those
-// that are no UTF-8 are replaced.
-std::string quoted(const std::string& name) {
+constexpr std::size_t kMostNameBytes = 200;
+
+// Names are of units, channels and shaders. A shader's comes with the trace, as long as it likes and of any
+// bytes: it is cut, between characters, and bytes that are no UTF-8 are replaced.
+std::string quoted(std::string name) {
+  if (name.size() > kMostNameBytes) {
+    const auto is_inside = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+    std::size_t end = kMostNameBytes;
+    while (end > 0 && is_inside(name[end])) --end;
+    name.replace(end, std::string::npos, "...");
+  }
   using nlohmann::json;
-  return json(name).dump(-1, ' ', false, json::error_handler_t::replace);
+  return json(std::move(name)).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 constexpr std::size_t kBufferBytes = 1 << 16;
-constexpr std::size_t kMostDigits = 20;  // of a number
+constexpr std::size_t kMostDigits = 20;        // of a number
+constexpr std::uint64_t kShareOfCommands = 4;  // at most a quarter of the room is kept for them
 constexpr std::uint32_t kCommandTrack = 0;
 std::uint32_t track_of(const Unit& unit) {
   return 1 + unit.number();
@@ -50,12 +60,21 @@ std::string track_name(std::uint32_t track, const std::string& name) {
          ",\"name\":\"thread_sort_index\",\"args\":{\"sort_index\":" + std::to_string(track) + "}}";
 }
 
+// Of an event of these pieces and two numbers.
+std::size_t most_bytes_of(std::string_view head, std::string_view middle, std::string_view tail) {
+  return head.size() + middle.size() + tail.size() + 2 * kMostDigits;
+}
+
 std::string name_of(const Trace& trace, std::size_t command) {
   const Command& what = trace.commands[command];
   if (std::holds_alternative<Clear>(what)) return "clear";
   if (std::holds_alternative<NormalizeOnHost>(what)) return "normalise on the host";
   if (std::holds_alternative<Present>(what)) return "present";
   return "draw: " + trace.programs[std::get<Draw>(what).vertex_program].name;
+}
+
+std::string command_tail(const Trace& trace, std::size_t command) {
+  return slice_tail(name_of(trace, command));
 }
 
 std::uint64_t data_clocks(const Unit& memory) {
@@ -79,6 +98,10 @@ void Timeline::begin(const SimulatedMachine& machine) {
     slice_heads_.push_back(slice_head(track_of(*unit)));
     slice_tails_.push_back(slice_tail("blocked by " + unit->name()));
   }
+  std::uint64_t commands = 0;
+  for (std::size_t i = 0; i < trace_.commands.size(); ++i)
+    commands += most_bytes_of(slice_head(kCommandTrack), kSliceMiddle, command_tail(trace_, i));
+  room_ = window_.most_bytes - std::min(commands, window_.most_bytes / kShareOfCommands);
   for (const auto& channel : machine.channels)
     channels_.push_back({counter_middle(channel->name(), "items")});
   for (const Unit* memory : machine.memory) {
@@ -87,9 +110,9 @@ void Timeline::begin(const SimulatedMachine& machine) {
   }
 }
 
-std::size_t Timeline::append(std::string_view head, std::uint64_t first, std::string_view middle,
-                             std::uint64_t second, std::string_view tail) {
-  const std::size_t most = head.size() + middle.size() + tail.size() + 2 * kMostDigits;
+void Timeline::append(std::string_view head, std::uint64_t first, std::string_view middle,
+                      std::uint64_t second, std::string_view tail) {
+  const std::size_t most = most_bytes_of(head, middle, tail);
   if (used_ + most > buffer_.size()) flush();
   if (most > buffer_.size()) buffer_.resize(std::max(most, kBufferBytes));
   char* const begin = buffer_.data() + used_;
@@ -99,7 +122,7 @@ std::size_t Timeline::append(std::string_view head, std::uint64_t first, std::st
   at = std::to_chars(at, at + kMostDigits, second).ptr;
   at = std::ranges::copy(tail, at).out;
   used_ += static_cast<std::size_t>(at - begin);
-  return static_cast<std::size_t>(at - begin);
+  bytes_ += static_cast<std::size_t>(at - begin);
 }
 
 void Timeline::flush() {
@@ -110,11 +133,11 @@ void Timeline::flush() {
 void Timeline::write(std::string_view head, std::uint64_t first, std::string_view middle,
                      std::uint64_t second, std::string_view tail, Cycle at) {
   if (cut_at_ != kNever) return;
-  if (bytes_ + head.size() + middle.size() + tail.size() + 2 * kMostDigits > window_.most_bytes) {
+  if (bytes_ + most_bytes_of(head, middle, tail) > room_) {
     cut_at_ = at;
     return;
   }
-  bytes_ += append(head, first, middle, second, tail);
+  append(head, first, middle, second, tail);
 }
 
 // To the window; false where nothing is left.
@@ -153,13 +176,16 @@ Cycle Timeline::sample(Cycle now) {
 }
 
 void Timeline::end(const Result& result) {
+  room_ = window_.most_bytes;
+  const Cycle others_cut_at = std::exchange(cut_at_, kNever);
   Cycle start = 0;
   for (std::size_t i = 0; i < trace_.commands.size(); ++i) {
     Cycle from = start, until = result.command_ends[i];
     if (clip(from, until))
-      append(slice_head(kCommandTrack), from, kSliceMiddle, until - from, slice_tail(name_of(trace_, i)));
+      write(slice_head(kCommandTrack), from, kSliceMiddle, until - from, command_tail(trace_, i), from);
     start = result.command_ends[i];
   }
+  cut_at_ = std::min(cut_at_, others_cut_at);
   flush();
   out_ << "\n]}\n";
 }

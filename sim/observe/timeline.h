@@ -14,7 +14,7 @@ namespace splatscope::sim {
 // A run as a timeline in Chrome's trace event format, which Perfetto opens: a track for the commands and one
 // for each unit (busy, starved, blocked by whom; idle is left empty), counters for the items in each channel
 // and for the use of each memory channel's data bus. One microsecond there is one core cycle. Written as a
-// stream; beside the commands' track no longer than `most_bytes`.
+// stream; beside the names of its tracks no longer than `most_bytes`.
 class Timeline final : public Observer {
  public:
   struct Window {
@@ -40,9 +40,9 @@ class Timeline final : public Observer {
     std::uint64_t value = 0;  // of the last sample
   };
 
-  // An event: three pieces of text about two numbers. Returns its bytes.
-  std::size_t append(std::string_view head, std::uint64_t first, std::string_view middle,
-                     std::uint64_t second, std::string_view tail);
+  // An event: three pieces of text about two numbers.
+  void append(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
+              std::string_view tail);
   // The same in the order of the run, as long as there is room; it begins at `at`.
   void write(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
              std::string_view tail, Cycle at);
@@ -60,8 +60,9 @@ class Timeline final : public Observer {
   std::vector<std::uint64_t> data_clocks_;  // of each memory channel at the last sample
   Cycle sampled_at_ = 0;
   std::vector<char> buffer_;
-  std::size_t used_ = 0;  // of it, not written yet
-  std::uint64_t bytes_ = 0;
+  std::size_t used_ = 0;     // of it, not written yet
+  std::uint64_t bytes_ = 0;  // of all events so far
+  std::uint64_t room_ = 0;   // for them: until the end of the run without what is kept for the commands
   Cycle cut_at_ = kNever;
 };
 
