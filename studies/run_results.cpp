@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_invoke.h>
 
-#include "model/isa/program.h"
 #include "studies/json_text.h"
 #include "studies/report/run_report.h"
 #include "studies/roofline.h"

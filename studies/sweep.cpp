@@ -156,7 +156,7 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
     };
     const auto answers =
         in_processes(same.points.size(), std::thread::hardware_concurrency(), time_one, [&](std::size_t n) {
-          if (progress) progress(static_cast<double>(done + n) / static_cast<double>(sweep.points.size()));
+          tell(progress, done + n, sweep.points.size());
         });
     done += answers.size();
     for (std::size_t i = 0; i < answers.size(); ++i)
