@@ -336,8 +336,10 @@ class DrawPipeline::State {
     return true;
   }
 
+  // `done` may use oneTBB too; it is not to take up other stages while it waits there.
   void end(Batch& batch, const Done& done) const {
-    if (batch.last && options_.record != Record::nothing) done(std::move(batch.draw->work));
+    if (!batch.last || options_.record == Record::nothing) return;
+    tbb::this_task_arena::isolate([&] { done(std::move(batch.draw->work)); });
   }
 
   void run_one_by_one(Frame& frame, const Next& next, const Done& done) {

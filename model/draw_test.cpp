@@ -38,7 +38,7 @@ Trace without_draws(std::mt19937& random) {
   for (int i = 0; i < 64; ++i) texture.texels.push_back(static_cast<std::uint8_t>(random() % 256));
   trace.textures = {texture};
   trace.programs = {{"colored.vs", "vs_1_1\nmov oPos, v0\nmov oD0, v1\nmov oT0, v1\n"},
-                    {"constant.vs", "vs_1_1\nmov oPos, v0\nmov oD0, c0\nmov oT0, v0\n"},
+                    {"constant.vs", "vs_1_1\nmov oPos, v0\nrcp r0, c1.x\nmin oD0, r0, c0\nmov oT0, v0\n"},
                     {"texture.ps", "ps_1_1\ntex t0\nadd r0, t0, v0\n"},
                     {"coordinates.ps", "ps_1_1\ntexcoord t0\nmul r0, t0, v0\n"}};
   return trace;
@@ -59,7 +59,8 @@ Draw any_draw(std::mt19937& random) {
   draw.index_buffer = 1;
   draw.index_count = one_in(8) ? 0 : 3 * static_cast<std::uint32_t>(1 + random() % 200);
   draw.first_index = static_cast<std::uint32_t>(random() % (3 * kVertices - draw.index_count));
-  draw.constants = {{one_in(2) ? 1.0f : 0.5f, 0.25f, 0.75f, 0.5f}};  // often those of the one before
+  // Often those of the draw before, or nearly so.
+  draw.constants = {{one_in(2) ? 1.0f : 0.5f, 0.25f, 0.75f, 0.5f}, {one_in(2) ? 0.0f : -0.0f}};
   const bool depth = draw.target == 0 && one_in(2);
   draw.state = {depth,     depth && one_in(2),     !depth || !one_in(4),
                 one_in(2), BlendFactor::src_alpha, BlendFactor::one};

@@ -18,6 +18,11 @@ constexpr std::uint32_t kCorners = 3, kQuad = 4, kQuadIndices = 6;
 constexpr std::size_t kIndices = 1 << 16;
 constexpr std::uint32_t kManyNumbers = 1u << 31;  // more than that are not given out before a draw
 
+// Bit by bit: of -0 and +0 the reciprocals differ.
+bool are_same(std::span<const Vec4> a, std::span<const Vec4> b) {
+  return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
+}
+
 }  // namespace
 
 GeometryBatch::GeometryBatch(const RenderOptions& options, const primitive::Viewport& viewport)
@@ -31,7 +36,7 @@ void GeometryBatch::bind(const DrawBindings& bindings) {
   const DrawBindings* const before = std::exchange(bindings_, &bindings);
   if (before != nullptr && &before->vertex == &bindings.vertex &&
       before->draw.attributes == bindings.draw.attributes &&
-      before->draw.constants == bindings.draw.constants)
+      are_same(before->draw.constants, bindings.draw.constants))
     return;
   program_.emplace(bindings.vertex, bindings.draw.constants);
   const unsigned read = bindings.vertex.inputs_read();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/units/draw_unit.h"
-
 namespace splatscope::studies {
 namespace {
 

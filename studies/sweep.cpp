@@ -145,19 +145,17 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
   for (const Group& same : groups) {
     sweep.input = make_input(opened, scene_or_trace, same.machine);
     const Trace& trace = sweep.input.trace;
-    if (fidelity != Fidelity::throughput) {
-      for (const std::size_t i : same.points)
-        sim::expect_countable_time(trace, machine_of(machine, sweep.points[i]));
+    if (fidelity != Fidelity::throughput && done == 0) {  // commands and size depend on no machine
+      for (const SweepPoint& point : sweep.points)
+        sim::expect_countable_time(trace, machine_of(machine, point));
     }
     const WorkStream stream = work_of(trace, same.machine, cache, sweep);
     const auto time_one = [&](std::size_t i) {
       const Machine timed = machine_of(machine, sweep.points[same.points[i]]);
       return json_text(timing_json(time_frame(trace, stream.work, timed, fidelity)));
     };
-    const auto answers =
-        in_processes(same.points.size(), std::thread::hardware_concurrency(), time_one, [&](std::size_t n) {
-          tell(progress, done + n, sweep.points.size());
-        });
+    const auto answers = in_processes(same.points.size(), std::thread::hardware_concurrency(), time_one,
+                                      [&](std::size_t n) { tell(progress, done + n, sweep.points.size()); });
     done += answers.size();
     for (std::size_t i = 0; i < answers.size(); ++i)
       sweep.points[same.points[i]].results = Json::parse(answers[i]);

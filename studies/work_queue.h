@@ -11,13 +11,13 @@
 
 namespace splatscope::studies {
 
-// The work of draws on its way from the thread that computes it to the one that times it. Few draws wait, so
+// The work of draws on its way from where it is computed to the thread that times it. Few draws wait, so
 // that neither their number nor the scene's size decides how much memory they take.
 class WorkQueue {
  public:
   static constexpr std::size_t kAhead = 4;  // draws that wait
 
-  // ---- the thread that computes; waits while there is no room
+  // ---- those that compute, one at a time; waits while there is no room
   void put(DrawWork work) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return waiting_.size() < kAhead || stopped_; });

@@ -7,7 +7,6 @@
 
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
-#include "traces/recorder.h"
 #include "traces/splat_trace.h"
 
 namespace splatscope::studies {
