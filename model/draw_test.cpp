@@ -8,16 +8,15 @@
 #include <span>
 #include <vector>
 
+#include "model/testing/draws.h"
+
 namespace splatscope {
 namespace {
 
 constexpr std::uint32_t kFrameSize = 64, kVertices = 600;
 
-template <typename Values>
-Buffer buffer_of(const Values& values) {
-  const auto bytes = std::as_bytes(std::span(values));
-  return {MemoryPlace::video, {bytes.begin(), bytes.end()}};
-}
+using testing::buffer_of;
+using testing::listed;
 
 // Triangles all over the frame, a position and a colour a vertex, and what draws of different kinds bind.
 Trace without_draws(std::mt19937& random) {
@@ -91,12 +90,7 @@ void expect_same_work(const DrawWork& a, const DrawWork& b) {
     EXPECT_EQ(a.triangles[i].quads_passed, b.triangles[i].quads_passed);
     EXPECT_EQ(a.triangles[i].outcome, b.triangles[i].outcome);
   }
-  ASSERT_EQ(a.quads.size(), b.quads.size());
-  for (std::size_t i = 0; i < a.quads.size(); ++i) {
-    EXPECT_EQ(a.quads[i].x, b.quads[i].x);
-    EXPECT_EQ(a.quads[i].passed, b.quads[i].passed);
-    EXPECT_EQ(a.quads[i].texel_block_count, b.quads[i].texel_block_count);
-  }
+  EXPECT_EQ(listed(a.quads), listed(b.quads));
   ASSERT_EQ(a.clear_tiles.size(), b.clear_tiles.size());
   for (std::size_t i = 0; i < a.clear_tiles.size(); ++i) {
     EXPECT_EQ(a.clear_tiles[i].triangle, b.clear_tiles[i].triangle);

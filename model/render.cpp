@@ -109,41 +109,40 @@ class Renderer {
       if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
     sampled_runs_apart_ = sampled_runs_apart(triangles);
     next_ = from;
-    while (next_ < to) {
-      if (std::holds_alternative<Draw>(commands_[next_])) {
-        run_draws(to);
-      } else {
-        begin();
-        std::visit([&](const auto& body) { run(body); }, commands_[next_]);
-        ++next_;
-      }
-    }
+    end_ = to;
+    while (next_ < end_) std::visit([&](const auto& body) { run(body); }, commands_[next_]);
   }
 
  private:
-  void begin() {
+  // The next command; its number.
+  std::size_t begin() {
     stop_if_asked();
     progress_(next_);
+    return next_++;
   }
-  void run(const Clear& clear) { output::clear(clear, rendered_.frame); }
-  void run(const NormalizeOnHost&) { output::normalize(rendered_.frame); }
-  void run(const Present&) {}
-  void run(const Draw&) {}  // run_draws()
+  void run(const Clear& clear) {
+    begin();
+    output::clear(clear, rendered_.frame);
+  }
+  void run(const NormalizeOnHost&) {
+    begin();
+    output::normalize(rendered_.frame);
+  }
+  void run(const Present&) { begin(); }
 
-  // Those that follow one another on one target: what they sample is another surface.
-  void run_draws(std::size_t to) {
-    const std::uint32_t number = std::get<Draw>(commands_[next_]).target;
-    Frame& target = number == 0 ? rendered_.frame : surfaces_[number - 1];
+  // With the draws that follow it on the same target: what they sample is another surface.
+  void run(const Draw& first) {
+    Frame& target = first.target == 0 ? rendered_.frame : surfaces_[first.target - 1];
     const auto next_draw_on_it = [&]() -> std::optional<DrawTask> {
-      const Draw* draw = next_ < to ? std::get_if<Draw>(&commands_[next_]) : nullptr;
-      if (draw == nullptr || draw->target != number) return std::nullopt;
+      const Draw* draw = next_ < end_ ? std::get_if<Draw>(&commands_[next_]) : nullptr;
+      if (draw == nullptr || draw->target != first.target) return std::nullopt;
       return next_draw(*draw);
     };
     pipeline_.run(target, next_draw_on_it, on_work_);
   }
 
   DrawTask next_draw(const Draw& draw) {
-    begin();
+    const std::size_t command = begin();
     const LoadedPixelProgram* pixel = draw.pixel_program ? &programs_.pixel(*draw.pixel_program) : nullptr;
     DrawTask task{
         {draw, trace_.buffers[draw.vertex_buffer], trace_.buffers[draw.index_buffer],
@@ -151,7 +150,7 @@ class Renderer {
          draw.source ? &surfaces_[*draw.source - 1] : nullptr, programs_.vertex(draw.vertex_program),
          pixel ? &pixel->program : nullptr, attributes_read(draw, pixel)},
         {}};
-    task.work.command = static_cast<std::uint32_t>(next_++);
+    task.work.command = static_cast<std::uint32_t>(command);
     task.work.sampled_runs_apart = sampled_runs_apart_;
     return task;
   }
@@ -170,7 +169,7 @@ class Renderer {
   std::vector<Frame> surfaces_;  // off-screen
   Programs programs_;
   DrawPipeline pipeline_;
-  std::size_t next_ = 0;  // command
+  std::size_t next_ = 0, end_ = 0;  // commands: the next one, and the end of the frame
   std::uint32_t sampled_runs_apart_ = 1;
 };
 

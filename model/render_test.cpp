@@ -16,16 +16,14 @@
 #include <string>
 #include <vector>
 
+#include "model/testing/draws.h"
 #include "model/testing/simd_targets.h"
 
 namespace splatscope {
 namespace {
 
-template <typename Values>
-Buffer buffer_of(const Values& values) {
-  const auto bytes = std::as_bytes(std::span(values));
-  return {MemoryPlace::video, {bytes.begin(), bytes.end()}};
-}
+using testing::buffer_of;
+using testing::listed;
 
 // One triangle over the whole of 4x4 pixels, with NaN in every texture coordinate.
 Trace nan_triangle(const std::string& pixel_program) {
@@ -209,12 +207,6 @@ Rendered on_threads(const Trace& trace, std::size_t threads, Record record,
   options.record = record;
   options.formats.frame = frame;
   return render(trace, options);
-}
-
-std::vector<std::array<unsigned, 4>> listed(std::span<const QuadWork> quads) {
-  std::vector<std::array<unsigned, 4>> all;
-  for (const QuadWork& quad : quads) all.push_back({quad.x, quad.y, quad.covered, quad.passed});
-  return all;
 }
 
 void expect_same_bits(const Trace& trace, FrameFormat frame) {

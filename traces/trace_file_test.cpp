@@ -67,12 +67,7 @@ void expect_equal(const Draw& a, const Draw& b) {
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.vertex_buffer, b.vertex_buffer);
   EXPECT_EQ(a.vertex_stride, b.vertex_stride);
-  ASSERT_EQ(a.attributes.size(), b.attributes.size());
-  for (std::size_t i = 0; i < a.attributes.size(); ++i) {
-    EXPECT_EQ(a.attributes[i].input, b.attributes[i].input);
-    EXPECT_EQ(a.attributes[i].format, b.attributes[i].format);
-    EXPECT_EQ(a.attributes[i].offset, b.attributes[i].offset);
-  }
+  EXPECT_EQ(a.attributes, b.attributes);
   EXPECT_EQ(a.base_vertex, b.base_vertex);
   EXPECT_EQ(a.index_buffer, b.index_buffer);
   EXPECT_EQ(a.first_index, b.first_index);
