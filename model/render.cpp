@@ -113,6 +113,9 @@ class Renderer {
     while (next_ < end_) std::visit([&](const auto& body) { run(body); }, commands_[next_]);
   }
 
+  // The frame (0) or an off-screen surface.
+  Frame& target(std::uint32_t number) { return number == 0 ? rendered_.frame : surfaces_[number - 1]; }
+
  private:
   // The next command; its number.
   std::size_t begin() {
@@ -132,13 +135,12 @@ class Renderer {
 
   // With the draws that follow it on the same target: what they sample is another surface.
   void run(const Draw& first) {
-    Frame& target = first.target == 0 ? rendered_.frame : surfaces_[first.target - 1];
     const auto next_draw_on_it = [&]() -> std::optional<DrawTask> {
       const Draw* draw = next_ < end_ ? std::get_if<Draw>(&commands_[next_]) : nullptr;
       if (draw == nullptr || draw->target != first.target) return std::nullopt;
       return next_draw(*draw);
     };
-    pipeline_.run(target, next_draw_on_it, on_work_);
+    pipeline_.run(target(first.target), next_draw_on_it, on_work_);
   }
 
   DrawTask next_draw(const Draw& draw) {
@@ -196,12 +198,13 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
   return rendered;
 }
 
-Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options) {
+Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options,
+                  std::uint32_t target) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
   Renderer renderer(
       trace, commands, options, rendered, [](const DrawWork&) {}, [](std::size_t) {});
   renderer.run_frame(0, commands.size());
-  return std::move(rendered.frame);
+  return std::move(renderer.target(target));
 }
 
 }  // namespace splatscope

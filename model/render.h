@@ -59,7 +59,9 @@ Rendered render(const Trace& trace, const RenderOptions& options,
                 const std::function<void(const Frame&)>& on_frame = {},
                 const std::function<void(DrawWork)>& on_work = {});
 
-// The frame that `commands` leave, on the buffers, textures and programs of `trace`: many views share them.
-Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options);
+// The frame that `commands` leave, or an off-screen surface (`target` as of a draw), on the buffers, textures
+// and programs of `trace`: many views share them.
+Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options,
+                  std::uint32_t target = 0);
 
 }  // namespace splatscope

@@ -37,7 +37,7 @@ class PixelHistory {
     step.before_in_double = held.in_double;
     step.after_in_double = held.in_double = in_double(step, command);
     done_.push_back(std::move(command));
-    const Frame frame = shown(step.target);
+    const Frame frame = render_view(trace_, done_, options_, step.target);
     step.after = held.stored = frame.color(pixel_);
     step.depth = frame.depth_value(pixel_);
     steps.push_back(step);
@@ -84,20 +84,6 @@ class PixelHistory {
       color[3] = 1;
     }
     return color;
-  }
-
-  // The frame, or a surface in its place: the frame is then left out, and the surface's draws are done twice,
-  // as other surfaces may be made from it.
-  Frame shown(std::uint32_t target) const {
-    if (target == 0) return render_view(trace_, done_, options_);
-    std::vector<Command> commands;
-    for (const Command& command : done_) {
-      const auto* draw = std::get_if<Draw>(&command);
-      if (!draw || draw->target == 0) continue;
-      commands.push_back(command);
-      if (draw->target == target) std::get<Draw>(commands.emplace_back(command)).target = 0;
-    }
-    return render_view(trace_, commands, options_);
   }
 
   // What `program` gives for the pixel, whatever is in the frame. Surfaces of binary32 hold what they would
