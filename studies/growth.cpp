@@ -110,7 +110,6 @@ void study_growth(Findings& findings, const Progress& progress) {
   using enum Report::Align;
   const std::vector<GrowthRow> rows = growth_rows(kSides, progress);
   auto results = nlohmann::ordered_json::object();
-  std::string lines = fmt::format("{:>9}", "surfels");
   std::vector<Report::Column> columns{{"surfels", number}};
   std::vector<std::vector<std::string>> cells(rows.size() + 1);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -131,16 +130,9 @@ void study_growth(Findings& findings, const Progress& progress) {
     for (std::size_t i = 0; i < rows.size(); ++i) cells[i].push_back(fmt::format("{:.3f}", series.y[i]));
     cells.back().push_back(fmt::format("{:.2f}", slope));
     results["measures"][std::string(measure.name)] = {{"values", series.y}, {"log_log_slope", slope}};
-    lines += fmt::format(" {:>14}", measure.name);
   }
-  for (const auto& row : cells) {
-    lines += fmt::format("\n{:>9}", row[0]);
-    for (std::size_t i = 1; i < row.size(); ++i) lines += fmt::format(" {:>14}", row[i]);
-  }
-  findings.say(lines + "\n");
   findings.report().heading("Growth with the number of surfels");
-  findings.report().table("Planes with four pixels a surfel, each time the least of some runs.", columns,
-                          cells);
+  findings.table("Planes with four pixels a surfel, each time the least of some runs.", columns, cells);
   findings.plot("growth", plot);
   findings.result("growth", std::move(results));
 }

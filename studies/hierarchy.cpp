@@ -66,28 +66,7 @@ std::string percent(std::size_t part, std::size_t whole) {
 
 using Json = nlohmann::ordered_json;
 using Cells = std::vector<std::string>;
-
-// A table on the terminal and in the report; the first column is text, the others are numbers.
-void add_table(Findings& findings, std::string_view caption, const Cells& heads,
-               const std::vector<Cells>& rows) {
-  std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < heads.size(); ++c) {
-    std::size_t width = heads[c].size();
-    for (const Cells& row : rows) width = std::max(width, row[c].size());
-    widths.push_back(width);
-  }
-  const auto line = [&](const Cells& cells) {
-    std::string text = fmt::format("{:<{}}", cells[0], widths[0]);
-    for (std::size_t c = 1; c < cells.size(); ++c) text += fmt::format("  {:>{}}", cells[c], widths[c]);
-    return text + "\n";
-  };
-  std::string text = line(heads);
-  for (const Cells& row : rows) text += line(row);
-  findings.say(text + "\n");
-  std::vector<Report::Column> columns{{heads[0]}};
-  for (std::size_t c = 1; c < heads.size(); ++c) columns.push_back({heads[c], Report::Align::number});
-  findings.report().table(caption, columns, rows);
-}
+using enum Report::Align;
 
 void study_culling(Findings& findings, const Machine& machine, const Progress& progress) {
   std::vector<Cells> cells;
@@ -123,11 +102,21 @@ void study_culling(Findings& findings, const Machine& machine, const Progress& p
     first.hierarchy.block_surfels = surfels;
     add(fmt::format("{}, blocks of {}", kModels[0], surfels), first);
   }
-  add_table(
-      findings,
+  findings.table(
       "Culling by blocks, 512 x 512: surfels outside of the frustum and, inside, facing away; how many of "
       "all were culled as such; draws of a pass; frame rates without culling and with it.",
-      {"view", "surfels", "outside", "culled", "away", "culled", "blocks", "draws", "fps off", "fps"}, cells);
+      {{"view"},
+       {"surfels", number},
+       {"outside", number},
+       {"culled", number},
+       {"away", number},
+       {"culled", number},
+       {"blocks", number},
+       {"draws", number},
+       {"fps off", number},
+       {"fps", number}},
+      cells);
+  findings.say("\n");
   findings.result("culling", std::move(results));
 }
 
@@ -150,12 +139,19 @@ void study_levels(Findings& findings, const Machine& machine, const Progress& pr
                        {"psnr_decibels", row.psnr}});
     tell(progress, cells.size(), std::size(kDistances));
   }
-  add_table(findings,
-            "The salamander from further away, with a surfel a pixel where a coarser level has as many: "
-            "against the "
-            "finest level alone.",
-            {"distance", "spacing", "surfels", "fps finest", "fps", "PSNR", "by level, the finest first"},
-            cells);
+  findings.table(
+      "The salamander from further away, with a surfel a pixel where a coarser level has as many: "
+      "against the "
+      "finest level alone.",
+      {{"distance"},
+       {"spacing", number},
+       {"surfels", number},
+       {"fps finest", number},
+       {"fps", number},
+       {"PSNR", number},
+       {"by level, the finest first", number}},
+      cells);
+  findings.say("\n");
   findings.result("levels", std::move(results));
 }
 
@@ -173,8 +169,8 @@ void study_progressive(Findings& findings, const Machine& machine) {
     pictures.push_back(
         {"progressive-" + number, fmt::format("frame {}: {} surfels", number, row.surfels), row.picture});
   }
-  add_table(findings, "Frames of a progressive rendering, each against the last.",
-            {"frame", "surfels", "ms", "PSNR"}, cells);
+  findings.table("Frames of a progressive rendering, each against the last.",
+                 {{"frame"}, {"surfels", number}, {"ms", number}, {"PSNR", number}}, cells);
   findings.pictures(pictures);
   findings.result("progressive", std::move(results));
 }

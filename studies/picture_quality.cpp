@@ -78,23 +78,30 @@ nlohmann::ordered_json json_of(std::string_view setting, const QualityRow& row) 
           {"unseen", row.unseen}};
 }
 
-std::string head(std::string_view setting) {
-  return fmt::format(
-      "{}\n{:<14} {:>7} | {:^19} | {:^26} | {:^34} | {:>7}\n"
-      "{:<14} {:>7} | {:>5} {:>6} {:>6} | {:>5} {:>6} {:>6} {:>6} | {:>8} {:>8} {:>8} {:>7} | {:>7}\n",
-      setting, "", "", "per pixel", "per surfel", "per surfel off edges, step by step", "capture", "model",
-      "surfels", "all", "off e.", "holes", "all", "off e.", "holes", "Eq. 5", "exact", "captured", "float",
-      "8 bits", "");
-}
-
-std::string line(const QualityRow& r) {
-  return fmt::format(
-      "{:<14} {:>7} | {:>5.1f} {:>6.1f} {:>6} | {:>5.1f} {:>6.1f} {:>6} {:>6.1f} "
-      "| {:>8.1f} {:>8.1f} {:>8.1f} {:>7.1f} | {:>5.1f} s\n",
-      r.name, r.surfels, r.per_pixel.psnr, r.per_pixel.psnr_off_edges, r.per_pixel.holes, r.per_surfel.psnr,
-      r.per_surfel.psnr_off_edges, r.same_weights.holes, r.same_weights.psnr, r.exact.psnr_off_edges,
-      r.captured.psnr_off_edges, r.float_frame.psnr_off_edges, r.per_surfel.psnr_off_edges,
-      r.capture_seconds);
+void add_table(Findings& findings, const std::vector<std::vector<std::string>>& rows) {
+  using enum Report::Align;
+  findings.table(
+      fmt::format(
+          "{} surfels at 512 x 512. PSNR in dB over the surface, and off edges, of both "
+          "normalisations against the reference, which divides in each pixel; per surfel also against "
+          "Eq. 5 in double precision with the same weights; off edges also from exact weights in double "
+          "precision, from captured weights in double precision, and from these with a float frame "
+          "buffer; seconds of the capture of weights.",
+          kSurfels),
+      {{"model"},
+       {"splatting"},
+       {"per pixel", number},
+       {"off edges", number},
+       {"holes", number},
+       {"per surfel", number},
+       {"off edges", number},
+       {"holes", number},
+       {"Eq. 5", number},
+       {"exact", number},
+       {"captured", number},
+       {"float frame", number},
+       {"capture, s", number}},
+      rows);
 }
 
 std::vector<std::string> cells(std::string_view setting, const QualityRow& r) {
@@ -103,9 +110,10 @@ std::vector<std::string> cells(std::string_view setting, const QualityRow& r) {
           std::string(setting),
           decibels(r.per_pixel.psnr),
           decibels(r.per_pixel.psnr_off_edges),
+          fmt::format("{}", r.per_pixel.holes),
           decibels(r.per_surfel.psnr),
           decibels(r.per_surfel.psnr_off_edges),
-          fmt::format("{}", r.per_pixel.holes + r.same_weights.holes),
+          fmt::format("{}", r.same_weights.holes),
           decibels(r.same_weights.psnr),
           decibels(r.exact.psnr_off_edges),
           decibels(r.captured.psnr_off_edges),
@@ -177,7 +185,6 @@ void study_quality(Findings& findings, const Progress& progress) {
   std::vector<std::vector<std::string>> table;
   const double steps = static_cast<double>(std::size(kSettings) * models.size());
   for (const auto& [setting, splatting] : kSettings) {
-    findings.say(head(setting));
     for (const ModelScene& model : models) {
       const traces::Scene scene = traces::parse_scene(
           fmt::format("[surfels]\n{}count = {}\n[splatting]\n{}", model.toml, kSurfels, splatting),
@@ -185,7 +192,6 @@ void study_quality(Findings& findings, const Progress& progress) {
       const double done = static_cast<double>(list.size());
       const QualityRow row =
           quality_of(model.name, scene, machine, part(progress, done / steps, (done + 1) / steps));
-      findings.say(line(row));
       list.push_back(json_of(setting, row));
       table.push_back(cells(setting, row));
       if (splatting.empty()) {
@@ -195,28 +201,7 @@ void study_quality(Findings& findings, const Progress& progress) {
     }
   }
   findings.result("quality", list);
-  using enum Report::Align;
-  findings.report().table(
-      fmt::format(
-          "{} surfels at 512 x 512. PSNR in dB over the surface, and off edges, of both "
-          "normalisations against the reference, which divides in each pixel; per surfel also against "
-          "Eq. 5 in double precision with the same weights; off edges also from exact weights in double "
-          "precision, from captured weights in double precision, and from these with a float frame "
-          "buffer; seconds of the capture of weights.",
-          kSurfels),
-      {{"model"},
-       {"splatting"},
-       {"per pixel", number},
-       {"off edges", number},
-       {"per surfel", number},
-       {"off edges", number},
-       {"holes", number},
-       {"against Eq. 5", number},
-       {"exact", number},
-       {"captured", number},
-       {"float frame", number},
-       {"capture, s", number}},
-      table);
+  add_table(findings, table);
 }
 
 }  // namespace splatscope::studies

@@ -17,8 +17,7 @@ namespace {
 
 constexpr std::string_view kSingle = "software, single";
 constexpr std::string_view kDouble = "software, double";
-constexpr std::string_view kMachines[] = {"radeon-8500", "geforce4-ti4400"};
-constexpr std::string_view kRenderers[] = {kSingle, kDouble, kMachines[0], kMachines[1]};
+constexpr std::string_view kRenderers[] = {kSingle, kDouble, kBothMachines[0], kBothMachines[1]};
 
 // Seconds of a renderer's frames over their pixels.
 Plot::Series series_of(std::span<const SoftwareRow> rows, std::string_view renderer) {
@@ -41,21 +40,7 @@ Plot frame_plot(const std::vector<SoftwareRow>& rows) {
   return plot;
 }
 
-std::string text_of(const std::vector<SoftwareRow>& rows, std::size_t points) {
-  std::string out =
-      fmt::format("{} points; software on {} threads of this host\n{:<16} {:>5} {:>10} {:>10}\n", points,
-                  oneapi::tbb::this_task_arena::max_concurrency(), "renderer", "size", "ms", "splats/s");
-  for (const SoftwareRow& row : rows) {
-    out += fmt::format("{:<16} {:>5} {:>10.1f} {:>8.2f} M\n", row.renderer, row.resolution,
-                       1000 * row.seconds, row.splats_per_second / 1e6);
-  }
-  for (const std::string_view renderer : kRenderers) {
-    out += fmt::format("{:<16} a frame's time grows with pixels^{:.2f}\n", renderer, growth(rows, renderer));
-  }
-  return out;
-}
-
-void add_table(Report& report, const std::vector<SoftwareRow>& rows) {
+void add_table(Findings& findings, const std::vector<SoftwareRow>& rows) {
   using enum Report::Align;
   std::vector<std::vector<std::string>> cells;
   for (const SoftwareRow& row : rows) {
@@ -64,14 +49,10 @@ void add_table(Report& report, const std::vector<SoftwareRow>& rows) {
                      fmt::format("{:.2f}", row.splats_per_second / 1e6),
                      fmt::format("{:.2f}", growth(rows, row.renderer))});
   }
-  report.table(
+  findings.table(
       "Points of the model a second, those that face away or are hidden included. Software: seconds of this "
       "host; machines: simulated. Growth: slope of log(time) over log(pixels).",
-      {{"renderer"},
-       {"size", number},
-       {"ms a frame", number},
-       {"million splats a second", number},
-       {"growth", number}},
+      {{"renderer"}, {"size", number}, {"ms a frame", number}, {"M splats/s", number}, {"growth", number}},
       cells);
 }
 
@@ -112,7 +93,7 @@ std::vector<SoftwareRow> software_rows(traces::Scene scene, std::span<const int>
                                      .depth_offset = offset,
                                      .cull_back_faces = true});
         }));
-    for (const std::string_view name : kMachines) {
+    for (const std::string_view name : kBothMachines) {
       const Machine machine = machine::load(name);
       add(name, run_frame(traces::record(scene, machine.numbers).trace, machine, fidelity).timing->seconds);
     }
@@ -130,9 +111,10 @@ void study_software(Findings& findings, const Progress& progress) {
                                             "software", part(progress, 0, 0.2));
   const std::vector<SoftwareRow> rows =
       software_rows(scene, std::array{256, 512, 1024}, 5, Fidelity::throughput, part(progress, 0.2, 1));
-  findings.say(text_of(rows, scene.surfels.size()));
   findings.report().heading("Software against hardware: section 8");
-  add_table(findings.report(), rows);
+  findings.say(fmt::format("{} points; software on {} threads of this host\n", scene.surfels.size(),
+                           oneapi::tbb::this_task_arena::max_concurrency()));
+  add_table(findings, rows);
   findings.plot("software", frame_plot(rows));
   findings.result("software", json_of(rows));
 }

@@ -32,6 +32,25 @@ void Findings::say(std::string_view text) {
   fmt::print("{}", text);
 }
 
+void Findings::table(std::string_view caption, const std::vector<Report::Column>& columns,
+                     const std::vector<std::vector<std::string>>& rows) {
+  report_.table(caption, columns, rows);
+  std::vector<std::string> lines(rows.size() + 1);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const auto cell = [&](std::size_t line) -> const std::string& {
+      return line == 0 ? columns[c].name : rows[line - 1][c];
+    };
+    std::size_t width = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) width = std::max(width, cell(i).size());
+    const bool is_number = columns[c].align == Report::Align::number;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (c > 0) lines[i] += "  ";
+      lines[i] += is_number ? fmt::format("{:>{}}", cell(i), width) : fmt::format("{:<{}}", cell(i), width);
+    }
+  }
+  for (std::string& line : lines) say(line.erase(line.find_last_not_of(' ') + 1) + "\n");
+}
+
 void Findings::write_picture(const std::string& name, const Image& image) const {
   write_exr(image, folder_.path() / (name + ".exr"));
   write_png(image, folder_.path() / (name + ".png"));

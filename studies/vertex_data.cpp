@@ -36,21 +36,6 @@ traces::Scene scene_of(const Plane& plane) {
   return traces::parse_scene(text, std::string(plane.name));
 }
 
-std::string text_of(const Plane& plane, const std::vector<VertexDataRow>& rows) {
-  std::string out =
-      fmt::format("{} x {} surfels\n{:<7} {:<7} {:<16} {:>4} {:>4} {:>7} {:>7} {:>7}  {:<21} {:<21} {:>6}\n",
-                  plane.surfels_a_side, plane.surfels_a_side, "pass 1", "pass 2", "machine", "VS1", "VS2",
-                  "bytes 1", "bytes 2", "surfel", "video memory", "AGP memory", "PSNR");
-  const auto rate = [](const Rate& r) { return fmt::format("{:>6.2f} fps {}", r.fps, r.bottleneck); };
-  for (const VertexDataRow& row : rows) {
-    out += fmt::format("{:<7} {:<7} {:<16} {:>4} {:>4} {:>7} {:>7} {:>7}  {:<21} {:<21} {:>6.1f}\n",
-                       row.programs.visibility, row.programs.ewa, row.machine, row.visibility_slots,
-                       row.ewa_slots, row.visibility_bytes, row.ewa_bytes, row.surfel_bytes(),
-                       rate(row.video), rate(row.agp), row.psnr);
-  }
-  return out;
-}
-
 nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows) {
   auto list = nlohmann::ordered_json::array();
   const auto rate = [](const Rate& r) {
@@ -72,23 +57,24 @@ nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows) {
   return list;
 }
 
-void add_table(Report& report, const Plane& plane, const std::vector<VertexDataRow>& rows) {
+void add_table(Findings& findings, const Plane& plane, const std::vector<VertexDataRow>& rows) {
   using enum Report::Align;
   std::vector<std::vector<std::string>> cells;
   const auto rate = [](const Rate& r) { return fmt::format("{:.2f} ({})", r.fps, r.bottleneck); };
   for (const VertexDataRow& row : rows) {
-    cells.push_back({fmt::format("{}, {}", row.programs.visibility, row.programs.ewa), row.machine,
+    cells.push_back({std::string(row.programs.visibility), std::string(row.programs.ewa), row.machine,
                      fmt::format("{} + {}", row.visibility_slots, row.ewa_slots),
                      fmt::format("{} + {}", row.visibility_bytes, row.ewa_bytes),
                      fmt::format("{}", row.surfel_bytes()), rate(row.video), rate(row.agp),
                      fmt::format("{:.1f}", row.psnr)});
   }
-  report.table(
+  findings.table(
       fmt::format("Plane of {0} x {0} surfels at 512 x 512. Slots and bytes a vertex of the two passes; "
                   "bytes read for a surfel in a frame; frames a second, and the busiest unit, with the "
                   "vertices in video and in AGP memory; PSNR against the first pair's picture.",
                   plane.surfels_a_side),
-      {{"programs"},
+      {{"pass 1"},
+       {"pass 2"},
        {"machine"},
        {"slots", number},
        {"bytes", number},
@@ -184,8 +170,8 @@ void study_vertex_data(Findings& findings, const Progress& progress) {
     const double next = done + (plane.surfels_a_side == 256 ? 0.3 : 0.7);
     const auto rows = vertex_data_rows(scene_of(plane), part(progress, done, next));
     done = next;
-    findings.say(text_of(plane, rows));
-    add_table(findings.report(), plane, rows);
+    findings.say(fmt::format("{0} x {0} surfels\n", plane.surfels_a_side));
+    add_table(findings, plane, rows);
     if (results.empty()) findings.plot("vertex-data-slots", slots_plot(rows));
     findings.plot(fmt::format("vertex-data-{}", plane.name), rate_plot(rows));
     results[std::string(plane.name)] = json_of(rows);
