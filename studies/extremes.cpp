@@ -236,7 +236,7 @@ std::vector<Guard> guards() {
        "paper",
        {{"mul r4.x, r2.z, r2.z", ";"},
         {"mad r4.x, r3.z, r3.z, r4.x", ";"},
-        {"mul r4.x, r4.x, r10.x", ";"},
+        {"mul r4.x, r4.x, r7.z", ";"},
         {"rsq r4.x, r4.x", ";"},
         {"mul r4.x, r4.x, r1.w", ";"},
         {"mul r4.x, r4.x, c7.z", ";"},

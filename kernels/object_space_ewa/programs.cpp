@@ -1,6 +1,7 @@
 #include "kernels/object_space_ewa/programs.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <string>
@@ -60,6 +61,7 @@ std::vector<Vec4> splat_constants(const View& view, double cutoff, double depth_
   c[7] = vec4(kAbsoluteFloor, kRelativeFloor, 0.25 / std::sqrt(cutoff), kSmallestP);
   const float side = static_cast<float>(2.0 * std::sqrt(cutoff));
   c[8] = {side, -0.5f * side, inverse_side(side), 0.5f};
+  c[9] = {0, 0, 0, std::numeric_limits<float>::min()};
   return c;
 }
 

@@ -33,12 +33,12 @@ enum SurfelInput : std::uint8_t {
   kColorInput = 5  // d3dcolor: w_k; its alpha is not read
 };
 
-// Constants c0 to c8, of which each program reads those it needs.
-inline constexpr int kSplatConstantCount = 9;
+// Constants c0 to c9, of which each program reads those it needs.
+inline constexpr int kSplatConstantCount = 10;
 
-// c0..c2: rows of the object-to-camera matrix. c3..c4: the frustum, near plane, z_t. c5: corners. c6..c8:
-// eta, guards and corners of the EWA program. `cutoff` is c of Eq. 14 (the filter ends at sqrt(2c) standard
-// deviations), > 0; `depth_offset` is z_t of section 5.1 in camera-space units.
+// c0..c2: rows of the object-to-camera matrix. c3..c4: the frustum, near plane, z_t. c5: corners. c6..c9:
+// eta, guards, corners and the least number over 0, of the EWA program. `cutoff` is c of Eq. 14 (the filter
+// ends at sqrt(2c) standard deviations), > 0; `depth_offset` is z_t of section 5.1 in camera-space units.
 std::vector<Vec4> splat_constants(const View& view, double cutoff, double depth_offset);
 
 }  // namespace splatscope::kernels

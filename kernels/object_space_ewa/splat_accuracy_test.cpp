@@ -61,6 +61,24 @@ TEST_P(EwaAccuracy, tiny_surfels) {
   EXPECT_LT(errors.window_corner, 0.1);
 }
 
+// Appendix A turns by 45 degrees at most: an edge of the quad lies along its own axis of the surfel at least
+// as much as along the other, so a corner is drawn where its weight belongs.
+TEST(SplatAccuracy, corners_keep_to_their_own_weights) {
+  const View view = test_view();
+  std::mt19937 generator(2006);
+  const std::vector<Surfel> surfels = random_surfels(view, {}, kCount, generator);
+  for (const SplatProgram* program : {&ewa_program("paper"), &plain_program()}) {
+    const auto quads = run_quads(*program, Arithmetic::ieee, view, 0.0, surfels);
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+      const std::array<glm::dvec2, 4> u = tangent_plane(view, surfels[i], quads[i]);
+      const glm::dvec2 first = u[1] - u[0], second = u[3] - u[0];
+      const double rounding = 1e-3;  // where the axes are 45 degrees off, and u is far from the eye
+      ASSERT_GT(first.x * (1 + rounding), std::abs(first.y)) << "surfel " << i << ", seed 2006";
+      ASSERT_GT(second.y * (1 + rounding), std::abs(second.x)) << "surfel " << i << ", seed 2006";
+    }
+  }
+}
+
 TEST(SplatAccuracy, plain_in_ieee) {
   const SplatErrors errors = measure(Arithmetic::ieee, plain_program(), 2005);
   EXPECT_LT(errors.deviation, 0.005);

@@ -46,53 +46,54 @@ mul r8.xyz, r8, r7.x            ; T/D^2, S/D^2, R/D^2 = -B/2
 mul r8.xy, r8, c4.w
 add r8.w, r8.x, r8.y            ; half the trace of J^-1 J^-T
 mul r7.y, v4.x, v4.x            ; sigma^2
-add r9.x, r8.x, -r8.y           ; p/2
-add r9.y, r8.w, r7.y            ; q/2
+add r9.xy, r8, -r8.yxzw         ; p/2, -p/2
+add r10.y, r8.w, r7.y           ; q/2
 
 ; |t|/2 = sqrt((p/2)^2 + (B/2)^2)
-sge r9.w, r9.x, c6.z            ; p >= 0
-max r9.x, r9.x, -r9.x
+sge r9.zw, r9.xxxy, c9          ; p >= 0, p < 0
+max r9.x, r9.x, r9.y
 max r9.x, r9.x, c7.w            ; |p|/2, never 0: M = I gives the identity, and p = 0 with B < 0 its own sign
 mul r7.z, r8.z, r8.z
 mad r7.z, r9.x, r9.x, r7.z
-rsq r9.z, r7.z                  ; 2/|t|
-mul r7.z, r7.z, r9.z            ; |t|/2
+rsq r8.y, r7.z                  ; 2/|t|
+mul r7.z, r7.z, r8.y            ; |t|/2
 
 ; larger eigenvalue (q + |t|)/2; the smaller by |M| = sigma^4 + sigma^2 trace(J^-1 J^-T) + 1/D^2: q - |t| cancels
-add r10.x, r9.y, r7.z           ; r0^2
-add r10.z, r9.y, r8.w
+add r7.z, r10.y, r7.z           ; r0^2
+add r10.z, r10.y, r8.w
 mad r10.z, r10.z, r7.y, r7.x    ; |M|
-rsq r10.w, r10.z                ; 1/(r0 r1)
-rcp r10.z, r10.w
-rsq r7.w, r10.x                 ; 1/r0
-mul r10.y, r10.z, r7.w          ; r1
+rsq r8.x, r10.z                 ; 1/(r0 r1)
+rcp r7.y, r8.x
+rsq r7.w, r7.z                  ; 1/r0
+mul r10.xy, r7.zyxw, r7.w       ; r0, r1
 
 ; Seen edge-on a parallelogram reaches past the eye: y becomes so short that no corner comes nearer than half the depth,
 ; as r0 sqrt(2) sqrt(2c) |(sz, tz)| is the most that one can. The texture follows: the Gaussian is cut, not squeezed.
 mul r4.x, r2.z, r2.z
 mad r4.x, r3.z, r3.z, r4.x
-mul r4.x, r4.x, r10.x
+mul r4.x, r4.x, r7.z
 rsq r4.x, r4.x
 mul r4.x, r4.x, r1.w
 mul r4.x, r4.x, c7.z
 min r4.x, r4.x, c3.w
 mul r0.xy, r0, r4.x
-mul r10.x, r10.x, r7.w          ; r0
 
 ; larger component of the eigenvector, times sqrt 2: sqrt(1 + |p|/|t|), the other B/|t| over it: t - p cancels, and the
 ; sign comes out right
-mad r11.x, r9.x, r9.z, c3.w
+mad r11.x, r9.x, r8.y, c3.w
 rsq r11.z, r11.x
 mul r11.x, r11.x, r11.z
-mul r11.y, -r8.z, r9.z
-mul r11.y, r11.y, r11.z
+mul r10.z, -r8.z, r8.y
+mul r10.z, r10.z, r11.z
 
-; the axis of r0: (larger, other) where p >= 0, (other, larger) where p < 0
-add r11.zw, r11.xxxy, -r11.xxyx
-mad r11.xy, r11.zwzw, r9.w, r11.yxyx   ; sqrt 2 times cos(theta), sin(theta)
+; theta within 45 degrees (Appendix A), so that each corner keeps to its own weight: where p < 0 the larger axis is the
+; second one, and the other component changes its sign
+mul r7, r10.xxzz, r9.zwzw
+max r11.zw, r7.xxxy, r10.y      ; the radius along each axis
+add r11.y, r7.z, -r7.w          ; sqrt 2 sin(theta); r11.x is sqrt 2 cos(theta)
 
 ; Eq. 12: u = Rot(theta) Lambda y
-mul r4.xy, r0, r10
+mul r4.xy, r0, r11.zwzw
 mul r5.xy, r11, r4.x
 mad r5.x, -r11.y, r4.y, r5.x
 mad r5.y, r11.x, r4.y, r5.y
@@ -106,7 +107,7 @@ mul oPos.xyw, r1.xyzz, c3
 mad oPos.z, r1.z, c4.x, c4.y
 
 ; s_k / (2 pi r0 r1)
-mul r10.w, r10.w, v4.y
-mul oD0.w, r10.w, c6.w
+mul r8.x, r8.x, v4.y
+mul oD0.w, r8.x, c6.w
 mov oD0.xyz, v5
 mad oT0.xy, r0, c8.z, c8.w
