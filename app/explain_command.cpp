@@ -44,9 +44,11 @@ void explain(const Options& options, bool quiet) {
       studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
   if (!options.pixel.empty()) {
-    std::cout << studies::describe(
-        input.trace, machine.numbers,
-        studies::explain_pixel(input.trace, machine.numbers, pixel.first, pixel.second));
+    ProgressBar drawing("drawing", quiet);
+    const auto steps =
+        studies::explain_pixel(input.trace, machine.numbers, pixel.first, pixel.second, drawing.callback());
+    drawing.clear();
+    std::cout << studies::describe(input.trace, machine.numbers, steps);
   }
   if (!options.vertex.empty())
     std::cout << studies::explain_vertex(input.trace, machine.numbers, vertex.first, vertex.second);

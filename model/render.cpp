@@ -1,6 +1,8 @@
 #include "model/render.h"
 
+#include <deque>
 #include <map>
+#include <memory>
 #include <set>
 #include <span>
 #include <utility>
@@ -87,11 +89,9 @@ class Programs {
 class Renderer {
  public:
   // `on_work` takes the work of each draw; `progress` is told how many commands are begun.
-  Renderer(const Trace& trace, std::span<const Command> commands, const RenderOptions& options,
-           Rendered& rendered, std::function<void(DrawWork)> on_work,
-           std::function<void(std::size_t)> progress)
+  Renderer(const Trace& trace, const RenderOptions& options, Rendered& rendered,
+           std::function<void(DrawWork)> on_work, std::function<void(std::size_t)> progress)
       : trace_(trace),
-        commands_(commands),
         rendered_(rendered),
         on_work_(std::move(on_work)),
         progress_(std::move(progress)),
@@ -102,15 +102,17 @@ class Renderer {
     output::clear(Clear{}, rendered.frame);
   }
 
-  // The commands [from, to) of a frame.
-  void run_frame(std::size_t from, std::size_t to) {
+  // The commands of a frame, of which the first has the given number. They must outlive the renderer: a draw
+  // looks at what the one before it has bound.
+  void run_frame(std::span<const Command> commands, std::size_t first) {
     std::uint64_t triangles = 0;
-    for (const Command& command : commands_.subspan(from, to - from))
+    for (const Command& command : commands)
       if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
     sampled_runs_apart_ = sampled_runs_apart(triangles);
-    next_ = from;
-    end_ = to;
-    while (next_ < end_) std::visit([&](const auto& body) { run(body); }, commands_[next_]);
+    commands_ = commands;
+    first_ = first;
+    next_ = 0;
+    while (next_ < commands_.size()) std::visit([&](const auto& body) { run(body); }, commands_[next_]);
   }
 
   // The frame (0) or an off-screen surface.
@@ -120,8 +122,9 @@ class Renderer {
   // The next command; its number.
   std::size_t begin() {
     stop_if_asked();
-    progress_(next_);
-    return next_++;
+    const std::size_t number = first_ + next_++;
+    progress_(number);
+    return number;
   }
   void run(const Clear& clear) {
     begin();
@@ -136,7 +139,7 @@ class Renderer {
   // With the draws that follow it on the same target: what they sample is another surface.
   void run(const Draw& first) {
     const auto next_draw_on_it = [&]() -> std::optional<DrawTask> {
-      const Draw* draw = next_ < end_ ? std::get_if<Draw>(&commands_[next_]) : nullptr;
+      const Draw* draw = next_ < commands_.size() ? std::get_if<Draw>(&commands_[next_]) : nullptr;
       if (draw == nullptr || draw->target != first.target) return std::nullopt;
       return next_draw(*draw);
     };
@@ -164,14 +167,14 @@ class Renderer {
   }
 
   const Trace& trace_;
-  std::span<const Command> commands_;
   Rendered& rendered_;
   std::function<void(DrawWork)> on_work_;
   std::function<void(std::size_t)> progress_;
   std::vector<Frame> surfaces_;  // off-screen
   Programs programs_;
   DrawPipeline pipeline_;
-  std::size_t next_ = 0, end_ = 0;  // commands: the next one, and the end of the frame
+  std::span<const Command> commands_;  // of the frame
+  std::size_t first_ = 0, next_ = 0;   // the number of the first of them, and the next one's place among them
   std::uint32_t sampled_runs_apart_ = 1;
 };
 
@@ -189,22 +192,57 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
   const auto tell = [&](std::size_t command) {
     if (progress) progress(static_cast<double>(command) / static_cast<double>(trace.commands.size()));
   };
-  Renderer renderer(trace, trace.commands, options, rendered, on_work ? on_work : keep, tell);
-  std::size_t command = 0;
+  Renderer renderer(trace, options, rendered, on_work ? on_work : keep, tell);
+  const std::span<const Command> commands = trace.commands;
+  std::size_t first = 0;
   for (const std::size_t end : frame_ends(trace)) {
-    renderer.run_frame(std::exchange(command, end), end);
+    renderer.run_frame(commands.subspan(first, end - first), first);
+    first = end;
     if (on_frame) on_frame(rendered.frame);
   }
   return rendered;
 }
 
-Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options,
-                  std::uint32_t target) {
+Frame render_view(const Trace& trace, std::span<const Command> commands, RenderOptions options) {
+  options.record = Record::nothing;
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
   Renderer renderer(
-      trace, commands, options, rendered, [](const DrawWork&) {}, [](std::size_t) {});
-  renderer.run_frame(0, commands.size());
-  return std::move(renderer.target(target));
+      trace, options, rendered, [](const DrawWork&) {}, [](std::size_t) {});
+  renderer.run_frame(commands, 0);
+  return std::move(rendered.frame);
+}
+
+class Replay::State {
+ public:
+  State(const Trace& trace, const NumberFormats& formats)
+      : options_{.formats = formats, .record = Record::nothing},
+        rendered_{Frame(trace.width, trace.height, formats), {}, {}},
+        renderer_(
+            trace, options_, rendered_, [](const DrawWork&) {}, [](std::size_t) {}) {}
+
+  void run(std::vector<Command> commands) {
+    done_.push_back(std::move(commands));
+    renderer_.run_frame(done_.back(), 0);
+  }
+  const Frame& target(std::uint32_t number) { return renderer_.target(number); }
+
+ private:
+  RenderOptions options_;
+  Rendered rendered_;
+  std::deque<std::vector<Command>> done_;  // where the renderer has seen them
+  Renderer renderer_;
+};
+
+Replay::Replay(const Trace& trace, const NumberFormats& formats)
+    : state_(std::make_unique<State>(trace, formats)) {}
+Replay::~Replay() = default;
+
+void Replay::run(std::vector<Command> commands) {
+  state_->run(std::move(commands));
+}
+
+const Frame& Replay::target(std::uint32_t number) const {
+  return state_->target(number);
 }
 
 }  // namespace splatscope

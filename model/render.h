@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -59,9 +60,25 @@ Rendered render(const Trace& trace, const RenderOptions& options,
                 const std::function<void(const Frame&)>& on_frame = {},
                 const std::function<void(DrawWork)>& on_work = {});
 
-// The frame that `commands` leave, or an off-screen surface (`target` as of a draw), on the buffers, textures
-// and programs of `trace`: many views share them.
-Frame render_view(const Trace& trace, std::span<const Command> commands, const RenderOptions& options,
-                  std::uint32_t target = 0);
+// The frame that `commands` leave on the buffers, textures and programs of `trace`: many views share them.
+// Nothing is recorded.
+Frame render_view(const Trace& trace, std::span<const Command> commands, RenderOptions options);
+
+// Draws a frame piece by piece, and shows what there is in between.
+class Replay {
+ public:
+  // Draws on the resources of `trace`, which must outlive it. The frame and the surfaces are clear.
+  Replay(const Trace& trace, const NumberFormats& formats);
+  ~Replay();
+
+  // The commands that come next.
+  void run(std::vector<Command> commands);
+  // The frame (0) or an off-screen surface, as the target of a draw.
+  const Frame& target(std::uint32_t number) const;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace splatscope

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "model/error.h"
 #include "model/geometry.h"
@@ -17,44 +18,51 @@
 namespace splatscope::studies {
 namespace {
 
-// Renders what reached one pixel: a pixel holds what the triangles that cover it did, in order, so the trace
-// is drawn again with these triangles alone, one step further each time.
+// Follows one pixel through a trace: the trace is drawn once more, and each draw in pieces, so that there is
+// a look before and after every triangle that covers the pixel.
 class PixelHistory {
  public:
   PixelHistory(const Trace& trace, const NumberFormats& formats, std::uint32_t x, std::uint32_t y)
-      : trace_(trace), pixel_(std::size_t{y} * trace.width + x), held_(std::size_t{1} + trace.surfaces) {
-    options_.formats = formats;
-    options_.record = Record::nothing;
-    probe_ = options_;
-    probe_.formats.frame = FrameFormat::float32;
-    diffuse_program_ = add_program("ps_1_1\nmov r0, v0\n");
-    texel_program_ = add_program("ps_1_1\ntex t0\nmov r0, t0\n");
-  }
+      : trace_(trace),
+        pixel_(std::size_t{y} * trace.width + x),
+        scratch_(++trace_.surfaces),
+        diffuse_program_(add_program("ps_1_1\nmov r0, v0\n")),
+        texel_program_(add_program("ps_1_1\ntex t0\nmov r0, t0\n")),
+        machine_(trace_, formats),
+        wide_(trace_, with_float_frame(formats)),
+        held_(std::size_t{1} + trace.surfaces) {}
 
   void add(PixelStep step, Command command) {
     Held& held = held_[step.target];
     step.before = held.stored;
     step.before_in_double = held.in_double;
     step.after_in_double = held.in_double = in_double(step, command);
-    done_.push_back(std::move(command));
-    const Frame frame = render_view(trace_, done_, options_, step.target);
+    waiting_.push_back(std::move(command));
+    catch_up();
+    const Frame& frame = machine_.target(step.target);
     step.after = held.stored = frame.color(pixel_);
     step.depth = frame.depth_value(pixel_);
     steps.push_back(step);
   }
 
-  // One triangle of `draw`.
-  void add_triangle(PixelStep step, Draw draw) {
-    draw.first_index += 3 * step.triangle;
-    draw.index_count = 3;
+  // One triangle of `draw`, and before it those from `from` on, which do not cover the pixel.
+  void add_triangle(PixelStep step, const Draw& draw, std::uint32_t from) {
+    add_others(draw, from, step.triangle);
+    const Draw triangle = part(draw, step.triangle, step.triangle + 1);
     step.target = draw.target;
     step.writes_color = draw.state.color_write;
     if (step.writes_color) {
-      step.source = probe(draw, draw.pixel_program);
-      step.diffuse = probe(draw, diffuse_program_);
-      if (draw.texture || draw.source) step.texel = probe(draw, texel_program_);
+      catch_up();
+      step.source = probe(triangle, draw.pixel_program);
+      step.diffuse = probe(triangle, diffuse_program_);
+      if (draw.texture || draw.source) step.texel = probe(triangle, texel_program_);
     }
-    add(step, draw);
+    add(step, triangle);
+  }
+
+  // Triangles [from, to) of `draw`, none of which covers the pixel.
+  void add_others(const Draw& draw, std::uint32_t from, std::uint32_t to) {
+    if (from < to) waiting_.push_back(part(draw, from, to));
   }
 
   std::vector<PixelStep> steps;
@@ -66,9 +74,26 @@ class PixelHistory {
     PixelStep::Color in_double{};
   };
 
+  static NumberFormats with_float_frame(NumberFormats formats) {
+    formats.frame = FrameFormat::float32;
+    return formats;
+  }
+
   std::uint32_t add_program(const char* text) {
     trace_.programs.push_back({"probe.ps", text});
     return static_cast<std::uint32_t>(trace_.programs.size() - 1);
+  }
+
+  static Draw part(Draw draw, std::uint32_t from, std::uint32_t to) {
+    draw.first_index += 3 * from;
+    draw.index_count = 3 * (to - from);
+    return draw;
+  }
+
+  void catch_up() {
+    if (waiting_.empty()) return;
+    wide_.run(waiting_);
+    machine_.run(std::exchange(waiting_, {}));
   }
 
   static PixelStep::Color in_double(const PixelStep& step, const Command& command) {
@@ -88,29 +113,33 @@ class PixelHistory {
 
   // What `program` gives for the pixel, whatever is in the frame. Surfaces of binary32 hold what they would
   // in double, nearly.
-  Vec4 probe(Draw draw, std::optional<std::uint32_t> program) const {
-    draw.pixel_program = program;
-    draw.target = 0;
-    draw.state.depth_test = false;
-    draw.state.depth_write = false;
-    draw.state.blend = false;
-    std::vector<Command> commands;
-    if (draw.source) commands = done_;  // what is in the surface
-    commands.insert(commands.end(), {Clear{}, draw});
-    return render_view(trace_, commands, probe_).color(pixel_);
+  Vec4 probe(Draw triangle, std::optional<std::uint32_t> program) {
+    triangle.pixel_program = program;
+    triangle.target = scratch_;
+    triangle.state.depth_test = false;
+    triangle.state.depth_write = false;
+    triangle.state.blend = false;
+    wide_.run({triangle});
+    return wide_.target(scratch_).color(pixel_);
   }
 
   Trace trace_;
   std::size_t pixel_;
-  RenderOptions options_, probe_;
-  std::uint32_t diffuse_program_ = 0, texel_program_ = 0;
-  std::vector<Held> held_;  // of the frame and of each surface
-  std::vector<Command> done_;
+  std::uint32_t scratch_;  // a surface that the trace does not know
+  std::uint32_t diffuse_program_, texel_program_;
+  Replay machine_, wide_;         // in the machine's formats, and with frames of binary32
+  std::vector<Command> waiting_;  // that neither has drawn yet
+  std::vector<Held> held_;        // of the frame and of each surface
 };
 
-// Calls found(triangle, passed) for every triangle of the draw that covers the pixel, in order.
-template <class Found>
-void for_triangles_at(const DrawWork& work, std::uint32_t x, std::uint32_t y, Found found) {
+struct CoveringTriangle {
+  std::uint32_t triangle;
+  bool passed;  // the depth test
+};
+
+// The triangles of the draw that cover the pixel, in order.
+std::vector<CoveringTriangle> triangles_at(const DrawWork& work, std::uint32_t x, std::uint32_t y) {
+  std::vector<CoveringTriangle> found;
   const unsigned bit = (y & 1) * 2 + (x & 1);
   std::size_t quad = 0;
   for (std::uint32_t triangle = 0; triangle < work.triangles.size(); ++triangle) {
@@ -121,8 +150,9 @@ void for_triangles_at(const DrawWork& work, std::uint32_t x, std::uint32_t y, Fo
       covered = true;
       passed = passed || (q.passed >> bit & 1) != 0;
     }
-    if (covered) found(triangle, passed);
+    if (covered) found.push_back({triangle, passed});
   }
+  return found;
 }
 
 std::string text_of(const Vec4& color) {
@@ -166,7 +196,7 @@ const Draw& draw_of(const Trace& trace, std::uint32_t number) {
 }  // namespace
 
 std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& formats, std::uint32_t x,
-                                     std::uint32_t y) {
+                                     std::uint32_t y, const Progress& progress) {
   if (x >= trace.width || y >= trace.height) {
     throw UserError("--pixel", 0,
                     fmt::format("{},{} is outside of the frame, expected X below {} and Y below {}", x, y,
@@ -174,20 +204,25 @@ std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& fo
   }
   RenderOptions options;
   options.formats = formats;
-  const std::vector<DrawWork> work = render(trace, options).work;
+  std::vector<std::vector<CoveringTriangle>> covering;  // by draw
+  render(trace, options, part(progress, 0, 0.4), {},
+         [&](const DrawWork& work) { covering.push_back(triangles_at(work, x, y)); });
   PixelHistory history(trace, formats, x, y);
   std::uint32_t draws = 0;
   for (std::uint32_t i = 0; i < trace.commands.size(); ++i) {
+    tell(part(progress, 0.4, 1), i, trace.commands.size());
     const Command& command = trace.commands[i];
     PixelStep step;
     step.command = i;
     if (const auto* draw = std::get_if<Draw>(&command)) {
       step.draw = draws;
-      for_triangles_at(work[draws++], x, y, [&](std::uint32_t triangle, bool passed) {
+      std::uint32_t next = 0;
+      for (const auto& [triangle, passed] : covering[draws++]) {
         step.triangle = triangle;
         step.passed = passed;
-        history.add_triangle(step, *draw);
-      });
+        history.add_triangle(step, *draw, std::exchange(next, triangle + 1));
+      }
+      history.add_others(*draw, next, draw->index_count / 3);
       continue;
     }
     step.kind = std::holds_alternative<Clear>(command)     ? PixelStep::Kind::clear
@@ -259,7 +294,7 @@ std::string explain_vertex(const Trace& trace, const NumberFormats& formats, std
   const ShaderText& shader = trace.programs[draw.vertex_program];
   ShaderDebugger debugger(isa::load(shader.text, shader.name),
                           ShaderCase::of_object(std::move(registers), "--vertex", 0),
-                          formats.vertex_arithmetic);
+                          formats.vertex_arithmetic, formats.reciprocal_bits);
   std::istringstream commands("continue\nprint\n");
   std::ostringstream out;
   debugger.run(commands, "--vertex", out, false);

@@ -7,6 +7,7 @@
 
 #include "model/command/commands.h"
 #include "model/number/formats.h"
+#include "studies/study.h"
 
 // One pixel or one vertex of a trace, step by step: `splatscope explain`.
 namespace splatscope::studies {
@@ -38,7 +39,7 @@ struct PixelStep {
 // Every step that reached the pixel, in order. Triangles that do not cover it have none. Throws UserError
 // (file "--pixel") where it lies outside of the frame.
 std::vector<PixelStep> explain_pixel(const Trace& trace, const NumberFormats& formats, std::uint32_t x,
-                                     std::uint32_t y);
+                                     std::uint32_t y, const Progress& progress = {});
 
 // The same as text, a few lines a step, and a heading for each command.
 std::string describe(const Trace& trace, const NumberFormats& formats, const std::vector<PixelStep>& steps);

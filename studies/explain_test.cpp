@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "model/error.h"
 #include "model/render.h"
@@ -149,12 +150,48 @@ TEST(Explain, SurfacesAreMadeFromEachOther) {
   }
 }
 
+// A surface that is sampled elsewhere than at the pixel itself: what lies there was drawn past the pixel.
+TEST(Explain, SurfacesAreSampledAnywhere) {
+  Trace trace = small_volume_trace();
+  for (Command& command : trace.commands) {
+    auto* draw = std::get_if<Draw>(&command);
+    if (!draw || !draw->source) continue;
+    Buffer shifted = trace.buffers[draw->vertex_buffer];
+    const auto coordinate =
+        std::ranges::find(draw->attributes, VertexFormat::float2, &VertexAttribute::format);
+    ASSERT_NE(coordinate, draw->attributes.end());
+    for (std::size_t at = coordinate->offset; at < shifted.bytes.size(); at += draw->vertex_stride) {
+      float u = 0;
+      std::memcpy(&u, &shifted.bytes[at], sizeof u);
+      u += 3.0f / 16;  // three pixels
+      std::memcpy(&shifted.bytes[at], &u, sizeof u);
+    }
+    draw->vertex_buffer = static_cast<std::uint32_t>(trace.buffers.size());
+    trace.buffers.push_back(std::move(shifted));
+  }
+  const Frame frame = render(trace, {}).frame;
+  for (std::uint32_t x = 2; x < 14; x += 3) {
+    const std::vector<PixelStep> steps = explain_pixel(trace, {}, x, 8);
+    const auto last = std::ranges::find(steps.rbegin(), steps.rend(), 0u, &PixelStep::target);
+    EXPECT_EQ(frame.color(8 * 16 + x), last->after) << x;
+  }
+  EXPECT_GT(frame.color(8 * 16 + 5)[3], 0) << "something was drawn";
+}
+
 TEST(Explain, VertexProgramsAreTold) {
   const Trace trace = small_trace("ewa-per-surfel");
   const std::string text = explain_vertex(trace, {}, 1, 5);
   EXPECT_NE(std::string::npos, text.find("vertex 5 of draw 1, by splat_ewa.vs"));
   EXPECT_NE(std::string::npos, text.find("end of the program"));
   EXPECT_NE(std::string::npos, text.find("oPos"));
+}
+
+// A machine whose RCP and RSQ have few bits is explained by these.
+TEST(Explain, VertexProgramsRunInTheNumbersOfTheMachine) {
+  const Trace trace = small_trace("ewa-per-surfel");
+  NumberFormats few;
+  few.reciprocal_bits = 8;
+  EXPECT_NE(explain_vertex(trace, few, 1, 5), explain_vertex(trace, {}, 1, 5));
 }
 
 TEST(Explain, RefusesWhatIsNotThere) {

@@ -61,10 +61,12 @@ std::string output_name(int output) {
 
 }  // namespace
 
-ShaderDebugger::ShaderDebugger(isa::Program program, const ShaderCase& registers, Arithmetic arithmetic)
+ShaderDebugger::ShaderDebugger(isa::Program program, const ShaderCase& registers, Arithmetic arithmetic,
+                               int reciprocal_bits)
     : program_(std::move(program)), constants_(registers.constants()) {
-  program_.version.kind == isa::ShaderKind::vertex ? record_vertex(registers, arithmetic)
-                                                   : record_fragment(registers);
+  program_.version.kind == isa::ShaderKind::vertex
+      ? record_vertex(registers, vertex::VertexProgram(program_, arithmetic, reciprocal_bits))
+      : record_fragment(registers);
   for (const isa::Definition& definition : program_.definitions)
     constants_[definition.index] = definition.values;
   History written;  // only what the program writes
@@ -77,12 +79,11 @@ ShaderDebugger::ShaderDebugger(isa::Program program, const ShaderCase& registers
   history_ = std::move(written);
 }
 
-void ShaderDebugger::record_vertex(const ShaderCase& registers, Arithmetic arithmetic) {
+void ShaderDebugger::record_vertex(const ShaderCase& registers, const vertex::VertexProgram& program) {
   const auto in = registers.vertex_inputs();
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     for (std::size_t c = 0; c < 4; ++c) inputs_[i][c] = in->v[i][c][0];
-  for (const vertex::VertexState& state :
-       vertex::VertexProgram(program_, arithmetic).trace(constants_, *in)) {
+  for (const vertex::VertexState& state : program.trace(constants_, *in)) {
     for (std::size_t i = 0; i < state.temporaries.size(); ++i)
       history_[fmt::format("r{}", i)].push_back(state.temporaries[i]);
     for (int i = 0; i < vertex::kOutputs; ++i)

@@ -18,7 +18,9 @@ namespace splatscope::studies {
 // well as forward.
 class ShaderDebugger {
  public:
-  ShaderDebugger(isa::Program program, const ShaderCase& registers, Arithmetic arithmetic);
+  // `reciprocal_bits` as of a machine's numbers.
+  ShaderDebugger(isa::Program program, const ShaderCase& registers, Arithmetic arithmetic,
+                 int reciprocal_bits = 24);
 
   // Obeys commands, one a line, until "quit" or their end; "help" lists them. Interactive: prompts, and says
   // what is wrong with a command and goes on; else a wrong command is a UserError at `name`:line.
@@ -28,7 +30,7 @@ class ShaderDebugger {
   // Registers that instructions write, by name; one value before the first instruction and one after each.
   using History = std::map<std::string, std::vector<Vec4>>;
 
-  void record_vertex(const ShaderCase& registers, Arithmetic arithmetic);
+  void record_vertex(const ShaderCase& registers, const vertex::VertexProgram& program);
   void record_fragment(const ShaderCase& registers);
 
   // False where the command is quit. Throws std::invalid_argument saying what is wrong with it.
