@@ -6,9 +6,9 @@
 
 namespace splatscope::kernels {
 
-// The pinhole camera of Ren 2002, section 5.2. Camera space is Direct3D's: left-handed, x right, y up, z into
-// the screen. Window coordinates are in pixels from the upper left corner; pixel (i, j) has its centre at (i
-// + 0.5, j + 0.5).
+// The pinhole camera of Ren 2002, section 5.2. Object and camera space are Direct3D's: left-handed, in camera
+// space x right, y up, z into the screen. Window coordinates are in pixels from the upper left corner; pixel
+// (i, j) has its centre at (i + 0.5, j + 0.5).
 struct View {
   glm::dmat4 object_to_camera{1.0};  // uniform scaling, rotation and translation only (Eq. 9)
   int width = 0;                     // pixels

@@ -29,6 +29,7 @@ struct SurfelSource {
   Pattern pattern = Pattern::own;
   double pattern_scale = 0;  // radii of the bounding sphere
   double shading = 0;
+  bool mirror = false;
   int neighbours = 0;  // whose largest distance is the radius, and that the normal is fitted to
 };
 

@@ -63,6 +63,7 @@ TEST(Scene, EveryKeyIsRead) {
   const SceneSettings s = parse_settings(R"(
 [surfels]
 file = "x.ply"
+mirror = true
 neighbours = 9
 [camera]
 eye = [1, 2, 3]
@@ -101,6 +102,7 @@ box_max = [1, 2, 3]
 )",
                                          "s.toml");
   EXPECT_EQ(s.surfels.file, "x.ply");
+  EXPECT_TRUE(s.surfels.mirror);
   EXPECT_EQ(s.surfels.neighbours, 9);
   EXPECT_EQ(s.camera.eye, glm::dvec3(1, 2, 3));
   EXPECT_EQ(s.camera.target, glm::dvec3(4.5, 5, 6));
@@ -131,6 +133,20 @@ box_max = [1, 2, 3]
   EXPECT_FALSE(s.capture.corner_weights);
   EXPECT_EQ(s.capture.box_min, glm::dvec3(-1, -2, -3));
   EXPECT_EQ(s.capture.box_max, glm::dvec3(1, 2, 3));
+}
+
+// A right-handed file is the same model in a left-handed scene, the other way round.
+TEST(Scene, ModelsAreMirrored) {
+  const std::string model = "[surfels]\ngenerator = \"salamander\"\ncount = 200\n";
+  const Scene plain = parse_scene(model, "s.toml"),
+              mirrored = parse_scene(model + "mirror = true\n", "s.toml");
+  ASSERT_EQ(plain.surfels.size(), mirrored.surfels.size());
+  const glm::vec3 other_way(-1, 1, 1);
+  for (std::size_t i = 0; i < plain.surfels.size(); ++i) {
+    EXPECT_EQ(plain.surfels[i].position * other_way, mirrored.surfels[i].position);
+    EXPECT_EQ(plain.surfels[i].normal * other_way, mirrored.surfels[i].normal);
+    EXPECT_EQ(plain.surfels[i].color, mirrored.surfels[i].color);
+  }
 }
 
 TEST(Scene, ErrorsNameLineAndExpectation) {

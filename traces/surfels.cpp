@@ -56,6 +56,12 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
   result.camera = settings.camera;
   std::vector<Surfel>& surfels = points.surfels;
   result.skipped.not_finite = std::erase_if(surfels, [](const Surfel& s) { return !is_finite(s); });
+  if (settings.surfels.mirror) {
+    for (Surfel& s : surfels) {
+      s.position.x = -s.position.x;
+      s.normal.x = -s.normal.x;
+    }
+  }
   const auto leave_out_zero_radii = [&] {
     result.skipped.zero_radius += std::erase_if(surfels, [](const Surfel& s) { return !(s.radius > 0); });
   };
