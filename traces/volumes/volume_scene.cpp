@@ -161,24 +161,33 @@ void add_data_files(const SceneSettings& settings, const std::filesystem::path& 
 struct Box {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
 
-  void add(const glm::dvec3& place, double radius) {
-    low = glm::min(low, place - radius);
-    high = glm::max(high, place + radius);
+  void add(const glm::dvec3& place, const glm::dvec3& reach) {
+    low = glm::min(low, place - reach);
+    high = glm::max(high, place + reach);
   }
 };
 
+// What a voxel's cell reaches about its place: half of its edges.
+glm::dvec3 cell_reach(const VolumeScene& scene, const glm::ivec3& voxel) {
+  const glm::dmat3 edges = kernels::cell_edges(scene.volume, voxel, scene.places);
+  return 0.5 * (glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]));
+}
+
+// About the voxels' cells, not their places alone: the nearest layer must lie behind the near plane.
 Box box_of(const VolumeScene& scene) {
   const kernels::Volume& volume = scene.volume;
   Box box;
   if (scene.samples.empty() && !scene.places)
     return {volume.center() - 0.5 * volume.extent(), volume.center() + 0.5 * volume.extent()};
-  for (const kernels::VolumeSample& sample : scene.samples) box.add(sample.position, std::cbrt(sample.cell));
+  for (const kernels::VolumeSample& sample : scene.samples)
+    box.add(sample.position, glm::dvec3(std::cbrt(sample.cell)));
   if (!scene.places) return box;
   glm::ivec3 voxel;
   for (voxel.z = 0; voxel.z < volume.size.z; ++voxel.z) {
     for (voxel.y = 0; voxel.y < volume.size.y; ++voxel.y) {
       stop_if_asked();
-      for (voxel.x = 0; voxel.x < volume.size.x; ++voxel.x) box.add(scene.places(voxel), 0);
+      for (voxel.x = 0; voxel.x < volume.size.x; ++voxel.x)
+        box.add(scene.places(voxel), cell_reach(scene, voxel));
     }
   }
   return box;
@@ -253,7 +262,7 @@ kernels::VolumeSplats VolumeScene::splats() const {
   Box box;
   for (const kernels::VolumeSample& sample : set) {
     edges += std::cbrt(sample.cell);
-    box.add(sample.position, 0);
+    box.add(sample.position, glm::dvec3(0.0));
   }
   const glm::dvec3 extent = set.empty() ? glm::dvec3(1.0) : box.high - box.low;
   const double spacing = std::max({edges / static_cast<double>(std::max<std::size_t>(set.size(), 1)),

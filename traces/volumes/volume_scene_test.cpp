@@ -11,6 +11,7 @@
 #include "traces/output_files.h"
 #include "traces/scene.h"
 #include "traces/scene_keys.h"
+#include "traces/volume_trace.h"
 
 namespace splatscope::traces {
 namespace {
@@ -182,6 +183,27 @@ TEST_F(VolumeKinds, CamerasFrameTheirPlaces) {
   const double near = framed("file = \"values.nrrd\"\npositions = \"places.nrrd\"\n");
   EXPECT_GT(framed("file = \"values.nrrd\"\nx = [-40, -20, 0, 20, 40]\n"), 5 * near);
   EXPECT_GT(framed("samples = \"samples.ply\"\n"), near) << "samples have an extent";
+}
+
+// A camera whose near plane is left open looks along an axis: the first layer of voxels lies behind that
+// plane.
+TEST_F(VolumeKinds, NoLayerLiesInTheNearPlane) {
+  const auto framed = [&](const std::string& keys) {
+    return parse_volume_scene("[volume]\n" + keys +
+                                  "transfer = [{ value = 0, opacity = 0.5, color = [1, 1, 1] }]\n[camera]\n"
+                                  "eye = [0, 0, -30]\ntarget = [0, 0, 0]\n[frame]\nwidth = 64\nheight = 64\n",
+                              folder_ / "s.toml");
+  };
+  const std::string file = "file = \"values.nrrd\"\n";
+  const double near_plane = framed(file).view.near_plane;
+  for (const char* keys : {"", "z = [-1, 0, 1]\n", "positions = \"places.nrrd\"\n"}) {
+    const VolumeScene scene = framed(file + keys);
+    const kernels::VolumePicture picture = volume_picture(scene.view, scene.splats(), scene.settings);
+    EXPECT_EQ(picture.left_out, 0u) << keys;
+    EXPECT_EQ(picture.sheets, 3u) << keys;
+    EXPECT_DOUBLE_EQ(scene.view.near_plane, near_plane) << keys << ", as of the same grid without places";
+    EXPECT_EQ(record(scene).left_out, 0u) << keys << ", on the machine";
+  }
 }
 
 TEST_F(VolumeKinds, SaysWhatIsWrong) {

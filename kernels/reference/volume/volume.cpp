@@ -52,6 +52,12 @@ glm::dmat3 grid_variance(const Volume& volume, double kernel_variance) {
   return variance;
 }
 
+glm::dmat3 cell_edges(const Volume& grid, const glm::ivec3& voxel, const VoxelPlaces& places) {
+  glm::dmat3 edges;
+  for (int axis = 0; axis < 3; ++axis) edges[axis] = difference(grid, voxel, axis, places);
+  return edges;
+}
+
 std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
                                               const VoxelPlaces& places,
                                               const std::function<bool(float)>& seen) {
@@ -62,8 +68,7 @@ std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_
     for (voxel.y = 0; voxel.y < grid.size.y; ++voxel.y) {
       for (voxel.x = 0; voxel.x < grid.size.x; ++voxel.x) {
         if (seen && !seen(grid.value(voxel))) continue;
-        glm::dmat3 edges;  // of the voxel's cell
-        for (int axis = 0; axis < 3; ++axis) edges[axis] = difference(grid, voxel, axis, places);
+        const glm::dmat3 edges = cell_edges(grid, voxel, places);
         const double cell = std::abs(glm::determinant(edges));
         // The gradient by the place: the transposed inverse of the Jacobian.
         glm::dmat3 jacobian = edges;

@@ -50,9 +50,13 @@ struct VolumeSample {
 // Where the voxel (i, j, k) of a rectilinear or curvilinear grid stands, object units.
 using VoxelPlaces = std::function<glm::dvec3(const glm::ivec3&)>;
 
+// The edges of a voxel's cell: along each axis of such a grid, the difference of places between the voxel's
+// neighbours, one-sided at the faces.
+glm::dmat3 cell_edges(const Volume& grid, const glm::ivec3& voxel, const VoxelPlaces& places);
+
 // Such a grid: the values of `grid`, at least two voxels along each axis, with its voxels at `places`. V_k =
-// D D^T times `kernel_variance` with D the differences of places between a voxel's neighbours, the cell |D|.
-// A cell that has collapsed, as at a pole, has no gradient. Voxels whose values `seen` refuses are left out.
+// D D^T times `kernel_variance` with D the edges of the voxel's cell, the cell |D|. A cell that has
+// collapsed, as at a pole, has no gradient. Voxels whose values `seen` refuses are left out.
 std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
                                               const VoxelPlaces& places,
                                               const std::function<bool(float)>& seen = {});
