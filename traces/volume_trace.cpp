@@ -14,7 +14,6 @@
 #include "kernels/object_space_ewa/alpha_texture.h"
 #include "kernels/object_space_ewa/programs.h"
 #include "kernels/reference/volume/footprint.h"
-#include "kernels/reference/volume/sheet_drawing.h"
 #include "kernels/splat_programs.h"
 #include "kernels/voxel_ewa/programs.h"
 #include "model/error.h"
@@ -154,7 +153,7 @@ class Recorder {
 
   // Of all sheets, from back to front.
   std::vector<SheetPlan> plans() const {
-    const kernels::SheetAxis axis = kernels::sheet_axis(view_, std::nullopt);
+    const kernels::SheetAxis axis = kernels::sheet_axis(view_, splats_, std::nullopt);
     const kernels::SheetOrder order = kernels::sheet_order(splats_, axis.axis);
     std::vector<SheetPlan> plans(order.first.size() - 1);
     oneapi::tbb::parallel_for(std::size_t{0}, plans.size(), [&](std::size_t i) {

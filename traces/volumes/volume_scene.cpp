@@ -250,13 +250,14 @@ VolumeScene parse_volume_scene(std::string_view text, const std::filesystem::pat
 
 kernels::VolumeSplats VolumeScene::splats() const {
   if (samples.empty() && !places) return grid_splats(volume, transfer, kernel_variance, flattening);
-  std::vector<kernels::VolumeSample> placed;
+  kernels::PlacedSamples placed;
   if (places) {
     const auto seen = [&](float value) { return transfer(static_cast<double>(value)).opacity > 0; };
     placed = curvilinear_samples(volume, kernel_variance, places, seen);
   }
-  const std::span<const kernels::VolumeSample> set = places ? placed : samples;
-  // Sheets as thick as the samples are far apart, but not more than anyone could want.
+  const std::span<const kernels::VolumeSample> set = places ? placed.samples : samples;
+  // Where they are not a grid's layers, sheets as thick as the samples are far apart, but not more than
+  // anyone could want.
   constexpr double kMostSheets = 4096;
   double edges = 0;
   Box box;
@@ -267,7 +268,7 @@ kernels::VolumeSplats VolumeScene::splats() const {
   const glm::dvec3 extent = set.empty() ? glm::dvec3(1.0) : box.high - box.low;
   const double spacing = std::max({edges / static_cast<double>(std::max<std::size_t>(set.size(), 1)),
                                    std::max({extent.x, extent.y, extent.z}) / kMostSheets, 1e-30});
-  kernels::VolumeSplats result = sample_splats(set, transfer, spacing, flattening);
+  kernels::VolumeSplats result = sample_splats(set, transfer, spacing, flattening, placed.layers);
   result.empty = volume.values.size() - result.splats.size();
   return result;
 }

@@ -175,6 +175,52 @@ TEST_F(VolumeKinds, RectilinearKernelsFollowTheirSpacing) {
   EXPECT_DOUBLE_EQ(last[1][1], 1);
 }
 
+// Three layers, each of its own colour: with the file's own spacing a rectilinear grid is the regular one,
+// and with any other it has as many sheets.
+TEST_F(VolumeKinds, EachLayerOfAGridIsASheet) {
+  write_file(folder_ / "thin.nrrd",
+             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 5 4 3\nspacings: 1 1 0.25\nencoding: raw\n\n" +
+                 std::string(20, 'a') + std::string(20, 'b') + std::string(20, 'c'));
+  const auto layers = [&](const std::string& keys, const std::string& eye = "[0, 0, -30]") {
+    const std::string text = R"(transfer = [
+  { value = 97, opacity = 1, color = [1, 0, 0] },
+  { value = 98, opacity = 0.9, color = [0, 1, 0] },
+  { value = 99, opacity = 1, color = [0, 0, 1] },
+]
+ambient = 1
+diffuse = 0
+specular = 0
+[frame]
+width = 40
+height = 40
+[camera]
+target = [0, 0, 0]
+near = 1
+far = 100
+)";
+    return parse_volume_scene("[volume]\nfile = \"thin.nrrd\"\n" + keys + text + "eye = " + eye + "\n",
+                              folder_ / "s.toml");
+  };
+  const auto picture = [](const VolumeScene& scene) {
+    return volume_picture(scene.view, scene.splats(), scene.settings);
+  };
+  for (const char* eye : {"[0, 0, -30]", "[9, 8, 30]", "[3, -30, 8]", "[-30, 4, 1]"}) {
+    const auto regular = picture(layers("", eye));
+    const auto rectilinear = picture(layers("z = [-0.25, 0, 0.25]\n", eye));
+    EXPECT_EQ(rectilinear.sheets, regular.sheets) << eye;
+    double worst = 0;
+    for (std::size_t i = 0; i < regular.pixels.size(); ++i) {
+      for (int c = 0; c < 4; ++c)
+        worst = std::max(worst, std::abs(rectilinear.pixels[i][c] - regular.pixels[i][c]));
+    }
+    EXPECT_LT(worst, 1e-6) << eye;
+  }
+  for (const char* keys : {"z = [-1, 0, 16]\n", "z = [0, 0.01, 0.02]\n", "positions = \"places.nrrd\"\n"}) {
+    EXPECT_EQ(picture(layers(keys)).sheets, 3u) << keys;
+    EXPECT_EQ(record(layers(keys)).sheets, 3u) << keys << ", on the machine";
+  }
+}
+
 // What a scene leaves open of the camera frames where the voxels stand.
 TEST_F(VolumeKinds, CamerasFrameTheirPlaces) {
   const auto framed = [&](const std::string& keys) {

@@ -99,7 +99,7 @@ FastVolumePicture FastVolume::draw(const View& view, const VolumeSettings& setti
   const FastVolumeView fast = fast_view(view, settings, splats_, flat_);
   const FastTable table(0.5 * settings.cutoff);
   const SpecularTable specular(settings.light.specular, settings.light.shininess);
-  const SheetAxis axis = sheet_axis(view, settings.axis);
+  const SheetAxis axis = sheet_axis(view, splats_, settings.axis);
   SheetOrder& order = orders_[static_cast<std::size_t>(axis.axis)];
   if (order.first.empty()) order = sheet_order(splats_, axis.axis);
   FastVolumePicture picture{view.width, view.height, {}, splats_.splats.size(), 0};

@@ -38,7 +38,7 @@ class FastVolume {
   VolumeSplats splats_;
   bool flat_ = false;  // one of the splats is
   std::vector<std::array<float, 6>> kernels_;
-  std::array<SheetOrder, 3> orders_;
+  std::array<SheetOrder, kSheetAxes> orders_;
 };
 
 }  // namespace splatscope::kernels

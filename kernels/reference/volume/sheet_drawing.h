@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,26 +14,6 @@
 #include "model/stop.h"
 
 namespace splatscope::kernels {
-
-// The axis of the sheets, and whether the last of them is the nearest.
-struct SheetAxis {
-  int axis = 0;
-  bool last_is_nearest = false;
-};
-
-// `given`, or the axis most parallel to the line of sight.
-inline SheetAxis sheet_axis(const View& view, std::optional<int> given) {
-  // Camera z grows along each object axis by the third row of W.
-  SheetAxis result;
-  double most = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double slope = view.object_to_camera[axis][2];
-    if (given ? axis != *given : std::abs(slope) <= most) continue;
-    most = std::abs(slope);
-    result = {axis, slope < 0};
-  }
-  return result;
-}
 
 inline constexpr std::size_t kSplatsAtOnce = 1 << 15;  // about: they stay in the cache between the two steps
 

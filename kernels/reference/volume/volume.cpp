@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -58,10 +59,19 @@ glm::dmat3 cell_edges(const Volume& grid, const glm::ivec3& voxel, const VoxelPl
   return edges;
 }
 
-std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
-                                              const VoxelPlaces& places,
-                                              const std::function<bool(float)>& seen) {
-  std::vector<VolumeSample> samples;
+void LayerFacing::add(const glm::dvec3& normal) {
+  low = glm::min(low, normal);
+  high = glm::max(high, normal);
+}
+
+double LayerFacing::least_along(const glm::dvec3& direction) const {
+  const glm::dvec3 least = glm::min(direction * low, direction * high);
+  return least.x + least.y + least.z;
+}
+
+PlacedSamples curvilinear_samples(const Volume& grid, double kernel_variance, const VoxelPlaces& places,
+                                  const std::function<bool(float)>& seen) {
+  PlacedSamples result;
   glm::ivec3 voxel;
   for (voxel.z = 0; voxel.z < grid.size.z; ++voxel.z) {
     stop_if_asked();
@@ -70,20 +80,23 @@ std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_
         if (seen && !seen(grid.value(voxel))) continue;
         const glm::dmat3 edges = cell_edges(grid, voxel, places);
         const double cell = std::abs(glm::determinant(edges));
-        // The gradient by the place: the transposed inverse of the Jacobian.
-        glm::dmat3 jacobian = edges;
-        for (int axis = 0; axis < 3; ++axis) jacobian[axis] /= grid.spacing[axis];
-        samples.push_back({.position = places(voxel),
-                           .variance = kernel_variance * (edges * glm::transpose(edges)),
-                           .cell = cell,
-                           .gradient = cell > 0
-                                           ? glm::inverse(glm::transpose(jacobian)) * gradient(grid, voxel)
-                                           : glm::dvec3(0.0),
-                           .value = grid.value(voxel)});
+        VolumeSample sample{.position = places(voxel),
+                            .variance = kernel_variance * (edges * glm::transpose(edges)),
+                            .cell = cell,
+                            .value = grid.value(voxel)};
+        if (cell > 0) {
+          // Normals and gradients by the place: the transposed inverse of the Jacobian.
+          const glm::dmat3 normals = glm::inverse(glm::transpose(edges));
+          sample.gradient = normals * (gradient(grid, voxel) * grid.spacing);
+          for (int axis = 0; axis < 3; ++axis)
+            result.layers.facing[static_cast<std::size_t>(axis)].add(glm::normalize(normals[axis]));
+        }
+        result.samples.push_back(sample);
+        result.layers.voxels.push_back(voxel);
       }
     }
   }
-  return samples;
+  return result;
 }
 
 glm::dmat3 flattened(const glm::dmat3& variance, const glm::dvec3& normal, double s) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 namespace splatscope::kernels {
@@ -54,12 +56,33 @@ using VoxelPlaces = std::function<glm::dvec3(const glm::ivec3&)>;
 // neighbours, one-sided at the faces.
 glm::dmat3 cell_edges(const Volume& grid, const glm::ivec3& voxel, const VoxelPlaces& places);
 
+// Which way the layers of voxels along one axis of such a grid face: bounds of the unit normals of its cells,
+// toward the next layer. Those of a rectilinear grid are all one.
+struct LayerFacing {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+
+  void add(const glm::dvec3& normal);
+  // The least that any of them can have along a direction.
+  double least_along(const glm::dvec3& direction) const;
+};
+
+// The layers of such a grid along each of its axes.
+struct GridLayers {
+  std::vector<glm::ivec3> voxels;  // their numbers: those of a voxel's layers
+  std::array<LayerFacing, 3> facing;
+};
+
+struct PlacedSamples {
+  std::vector<VolumeSample> samples;
+  GridLayers layers;  // with a voxel for each of them
+};
+
 // Such a grid: the values of `grid`, at least two voxels along each axis, with its voxels at `places`. V_k =
 // D D^T times `kernel_variance` with D the edges of the voxel's cell, the cell |D|. A cell that has
-// collapsed, as at a pole, has no gradient. Voxels whose values `seen` refuses are left out.
-std::vector<VolumeSample> curvilinear_samples(const Volume& grid, double kernel_variance,
-                                              const VoxelPlaces& places,
-                                              const std::function<bool(float)>& seen = {});
+// collapsed, as at a pole, has no gradient and faces nowhere. Voxels whose values `seen` refuses are left
+// out.
+PlacedSamples curvilinear_samples(const Volume& grid, double kernel_variance, const VoxelPlaces& places,
+                                  const std::function<bool(float)>& seen = {});
 
 // Eq. 37: V with its extent along `normal` (of unit length) divided by s. Flat kernels along the gradient are
 // surface splats among volume splats.

@@ -138,7 +138,7 @@ VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const
   for (int top = 0; top < view.height; top += RowBands::kRows) {
     bands.emplace_back(RowRange{top, std::min(view.height, top + RowBands::kRows)}, settings.cutoff, picture);
   }
-  const SheetAxis axis = sheet_axis(view, settings.axis);
+  const SheetAxis axis = sheet_axis(view, splats, settings.axis);
   const SheetOrder order = sheet_order(splats, axis.axis);
   const Projector projector(view, splats, settings);
   const SheetsDrawn drawn =

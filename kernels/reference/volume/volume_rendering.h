@@ -30,7 +30,7 @@ struct VolumeSettings {
   // to 0.3%, at 4 to 7% (study volume-ripple).
   double cutoff = 11;
   PhongLight light{};
-  // Of the sheets: 0 x, 1 y, 2 z; else the one most parallel to the line of sight.
+  // Of the sheets: 0 x, 1 y, 2 z of object space; else the one most parallel to the line of sight.
   std::optional<int> axis{};
 };
 

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
+#include <optional>
 #include <random>
 
 #include "kernels/reference/volume/fast_volume.h"
@@ -125,6 +127,27 @@ TEST(VolumeRendering, OpacityOfFlatKernelsDoesNotGrowWithTheirSlope) {
   }
 }
 
+// A quarter of a ring and a whole one: where layers bend round, some would be composited from front to back.
+TEST(VolumeRendering, SheetsAreTheLayersOfAGridWhereAllFaceTheEye) {
+  const Volume grid = constant_volume({16, 4, 3}, glm::dvec3(1));
+  const auto axis_seen_from = [&](double turns, const glm::dvec3& eye) {
+    const auto [samples, layers] = curvilinear_samples(grid, 1, [&](const glm::ivec3& voxel) {
+      const double angle = 2 * std::numbers::pi * turns * (voxel.x / 15.0 - 0.5), radius = 3 + voxel.y;
+      return glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), voxel.z);
+    });
+    const VolumeSplats splats = sample_splats(samples, kGlass, 1, {}, layers);
+    return sheet_axis(look_at(eye, {0, 0, 0}, {0.3, 0.2, 1}, 30, 40, 40, 0.1, 100), splats, std::nullopt);
+  };
+  for (const double turns : {0.25, 1.0}) {
+    EXPECT_EQ(axis_seen_from(turns, {0, 4, -30}).axis, kLayerAxes + 2) << turns;
+    EXPECT_FALSE(axis_seen_from(turns, {0, 4, -30}).last_is_nearest) << turns;
+    EXPECT_TRUE(axis_seen_from(turns, {0, 4, 30}).last_is_nearest) << turns;
+  }
+  EXPECT_EQ(axis_seen_from(0.25, {30, 1, 1}).axis, kLayerAxes + 1);
+  EXPECT_TRUE(axis_seen_from(0.25, {30, 1, 1}).last_is_nearest);
+  EXPECT_EQ(axis_seen_from(1, {30, 1, 1}).axis, 0) << "across x of object space";
+}
+
 TEST(VolumeRendering, EmptyVoxelsAreLeftOut) {
   Volume volume = constant_volume({4, 5, 6}, glm::dvec3(1));
   volume.values[7] = 5;
@@ -172,12 +195,13 @@ TEST(FastVolume, IsThePictureOfTheDoublePrecisionRenderer) {
     const glm::dvec3 p = head.position(voxel);
     return p + glm::dvec3(0.2 * p.y * p.y, 0.1 * p.x, 0);
   };
+  const PlacedSamples placed = curvilinear_samples(head, 1, bent);
   const VolumeSplats cases[] = {
       grid_splats(head, kTissue),  // its z spacing is not that of x and y
       grid_splats(head, kTissue, 1, {.low = 0.6, .high = 1}),
       grid_splats(concentric_shells(24, 3), kTissue),  // spherical kernels
-      sample_splats(curvilinear_samples(head, 1, bent), kTissue, 0.1),
-      sample_splats(curvilinear_samples(head, 1, bent), kTissue, 0.1, {.low = 0.6, .high = 1, .s = 50})};
+      sample_splats(placed.samples, kTissue, 0.1),
+      sample_splats(placed.samples, kTissue, 0.1, {.low = 0.6, .high = 1, .s = 50}, placed.layers)};
   const View view = look_at({1.5, -3.4, 1}, {0, 0, 0}, {0, 0, 1}, 35, 101, 90, 0.1, 100);
   for (const VolumeSplats& splats : cases) {
     FastVolume fast(splats);

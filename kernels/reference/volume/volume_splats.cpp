@@ -28,10 +28,50 @@ VolumeSplat classified(const glm::dvec3& position, double value, const VoxelLook
   return splat;
 }
 
+// The least cosine between the line of sight and the normals of layers that are sheets. Of three axes at
+// right angles one has 0.577 at least; rays up to 30 degrees beside the line of sight meet the layers in
+// order.
+constexpr double kFacesTheEye = 0.5;
+
+// Of the grid's own axes, where the layers along one face the eye.
+std::optional<SheetAxis> layer_axis(const glm::dvec3& sight, const GridLayers& layers) {
+  if (layers.voxels.empty()) return std::nullopt;
+  std::optional<SheetAxis> result;
+  double most = kFacesTheEye;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool last_is_nearest : {false, true}) {
+      const double least =
+          layers.facing[static_cast<std::size_t>(axis)].least_along(last_is_nearest ? -sight : sight);
+      if (!(least > most)) continue;
+      most = least;
+      result = {kLayerAxes + axis, last_is_nearest};
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
-int VolumeSplats::sheet(const VolumeSplat& splat, int axis) const {
-  const double place = (static_cast<double>(splat.position[axis]) - low[axis]) / sheet_spacing[axis];
+SheetAxis sheet_axis(const View& view, const VolumeSplats& splats, std::optional<int> given) {
+  // Camera z grows along each object axis by the third row of W.
+  const glm::dvec3 slopes(view.object_to_camera[0][2], view.object_to_camera[1][2],
+                          view.object_to_camera[2][2]);
+  if (!given) {
+    if (const auto layers = layer_axis(glm::normalize(slopes), splats.layers)) return *layers;
+  }
+  SheetAxis result;
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (given ? axis != *given : std::abs(slopes[axis]) <= most) continue;
+    most = std::abs(slopes[axis]);
+    result = {axis, slopes[axis] < 0};
+  }
+  return result;
+}
+
+int VolumeSplats::sheet(std::size_t splat, int axis) const {
+  if (axis >= kLayerAxes) return layers.voxels[splat][axis - kLayerAxes];
+  const double place = (static_cast<double>(splats[splat].position[axis]) - low[axis]) / sheet_spacing[axis];
   return static_cast<int>(std::max(0l, std::lround(place)));
 }
 
@@ -70,12 +110,14 @@ VolumeSplats grid_splats(const Volume& volume, const TransferFunction& transfer,
 }
 
 VolumeSplats sample_splats(std::span<const VolumeSample> samples, const TransferFunction& transfer,
-                           double sheet_spacing, const Flattening& flattening) {
+                           double sheet_spacing, const Flattening& flattening, const GridLayers& layers) {
   VolumeSplats result;
   result.sheet_spacing = glm::dvec3(sheet_spacing);
   result.low = glm::dvec3(std::numeric_limits<double>::infinity());
-  for (const VolumeSample& sample : samples) {
+  result.layers.facing = layers.facing;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     stop_if_asked();
+    const VolumeSample& sample = samples[i];
     const double value = static_cast<double>(sample.value);
     const VoxelLook look = transfer(value);
     if (!(look.opacity > 0)) {
@@ -86,6 +128,7 @@ VolumeSplats sample_splats(std::span<const VolumeSample> samples, const Transfer
         classified(sample.position, value, look, sample.gradient, sample.cell, flattening));
     result.splats.back().kernel = static_cast<std::uint32_t>(result.kernels.size());
     result.kernels.push_back(sample.variance);
+    if (!layers.voxels.empty()) result.layers.voxels.push_back(layers.voxels[i]);
     result.low = glm::min(result.low, glm::dvec3(result.splats.back().position));
   }
   return result;
@@ -95,7 +138,7 @@ SheetOrder sheet_order(const VolumeSplats& splats, int axis) {
   std::vector<std::uint32_t> sheets(splats.splats.size());
   oneapi::tbb::parallel_for(std::size_t{0}, sheets.size(), [&](std::size_t k) {
     stop_if_asked();
-    sheets[k] = static_cast<std::uint32_t>(splats.sheet(splats.splats[k], axis));
+    sheets[k] = static_cast<std::uint32_t>(splats.sheet(k, axis));
   });
   SheetOrder order;
   const std::size_t count = sheets.empty() ? 0 : std::size_t{*std::ranges::max_element(sheets)} + 1;

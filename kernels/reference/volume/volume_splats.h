@@ -11,6 +11,7 @@
 
 #include "kernels/reference/volume/transfer_function.h"
 #include "kernels/reference/volume/volume.h"
+#include "kernels/view.h"
 
 namespace splatscope::kernels {
 
@@ -31,9 +32,11 @@ struct VolumeSplats {
   std::vector<glm::dmat3> kernels;  // V_k, object units squared; a grid's have one
   glm::dvec3 low{};                 // object units, of the first sheet along each axis
   glm::dvec3 sheet_spacing{1.0};    // between sheets, along each axis
+  GridLayers layers;                // of a rectilinear or curvilinear grid, a voxel for each splat; else none
   std::size_t empty = 0;            // voxels of opacity 0, left out
 
-  int sheet(const VolumeSplat& splat, int axis) const;
+  // `axis` as in SheetAxis.
+  int sheet(std::size_t splat, int axis) const;
 };
 
 // Which voxels are drawn as flat kernels, surface splats (section 6.4).
@@ -47,9 +50,23 @@ struct Flattening {
 VolumeSplats grid_splats(const Volume& volume, const TransferFunction& transfer, double kernel_variance = 1,
                          const Flattening& flattening = {});
 
-// The same of samples, in sheets `sheet_spacing` object units apart.
+// The same of samples, in sheets `sheet_spacing` object units apart; `layers`, of samples on a grid, has a
+// voxel for each.
 VolumeSplats sample_splats(std::span<const VolumeSample> samples, const TransferFunction& transfer,
-                           double sheet_spacing, const Flattening& flattening = {});
+                           double sheet_spacing, const Flattening& flattening = {},
+                           const GridLayers& layers = {});
+
+// The axis of the sheets, and whether the last of them is the nearest. 0 to 2: across x, y or z of object
+// space, as far apart as `sheet_spacing`; from kLayerAxes on the layers along an axis of the grid.
+struct SheetAxis {
+  int axis = 0;
+  bool last_is_nearest = false;
+};
+inline constexpr int kLayerAxes = 3, kSheetAxes = 6;
+
+// `given`, or the axis most parallel to the line of sight: of the grid where it has layers of its own and
+// they all face the eye from one side, else of object space.
+SheetAxis sheet_axis(const View& view, const VolumeSplats& splats, std::optional<int> given);
 
 // The sheets along one axis: the numbers of their splats, and where each sheet begins among them.
 struct SheetOrder {

@@ -53,11 +53,17 @@ TEST(Volume, FlatteningShrinksAlongTheNormalAlone) {
 
 TEST(Volume, CurvilinearKernelsFollowTheMap) {
   const Volume grid = ramp();
-  const auto samples = curvilinear_samples(grid, 1, [&](const glm::ivec3& voxel) {
+  const auto [samples, layers] = curvilinear_samples(grid, 1, [&](const glm::ivec3& voxel) {
     const glm::dvec3 p = grid.position(voxel);
     return glm::dvec3(p.y, 2 * p.x, p.z + 0.5 * p.y);
   });
   ASSERT_EQ(samples.size(), grid.values.size());
+  ASSERT_EQ(layers.voxels.size(), samples.size());
+  EXPECT_EQ(layers.voxels[1], glm::ivec3(1, 0, 0));
+  // The layers of constant p.y are planes of constant x; those of constant p.z slope by a half of x.
+  EXPECT_NEAR(layers.facing[1].least_along({1, 0, 0}), 1, 1e-12);
+  EXPECT_NEAR(layers.facing[2].least_along({0, 0, 1}), 1 / std::hypot(1, 0.5), 1e-12);
+  EXPECT_NEAR(layers.facing[2].least_along({1, 0, 0}), -0.5 / std::hypot(1, 0.5), 1e-12);
   for (const VolumeSample& sample : samples) {
     EXPECT_NEAR(sample.cell, 2 * (0.5 * 1 * 2), 1e-12);  // the map doubles volumes
     EXPECT_NEAR(glm::determinant(sample.variance), sample.cell * sample.cell, 1e-9);
@@ -69,11 +75,12 @@ TEST(Volume, CurvilinearKernelsFollowTheMap) {
 TEST(Volume, CollapsedCellsHaveNeitherVolumeNorGradient) {
   const Volume grid = ramp();
   const auto first = [&](float value) { return value == grid.values[0]; };
-  const auto samples = curvilinear_samples(
+  const auto [samples, layers] = curvilinear_samples(
       grid, 1, [](const glm::ivec3& v) { return glm::dvec3(v.x, v.x, v.z); }, first);
   const auto seen = static_cast<std::size_t>(std::ranges::count_if(grid.values, first));
   ASSERT_LT(seen, grid.values.size());
   EXPECT_EQ(samples.size(), seen) << "the others are not seen";
+  EXPECT_FALSE(layers.facing[2].least_along({0, 0, 1}) > -1) << "no layer faces anywhere";
   for (const VolumeSample& sample : samples) {
     EXPECT_EQ(sample.cell, 0);
     EXPECT_EQ(sample.gradient, glm::dvec3(0));
