@@ -20,7 +20,7 @@ struct HostVoxel {
   bool drawn = false;
   bool flat = false;
   glm::vec3 color{};        // shaded
-  float weight = 0;         // VolumeSplat's, with the slope of a flat kernel
+  float weight = 0;         // VolumeSplat's, of a flat kernel times flattened_weight
   float opacity = 0;        // at its centre
   glm::vec2 low{}, high{};  // its rectangle, pixels
   glm::vec3 conic{};        // xx, 2 xy, yy of the footprint

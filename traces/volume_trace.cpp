@@ -108,8 +108,12 @@ class Recorder {
   dmat3 object_variance(const kernels::VolumeSplat& splat) const {
     const dmat3& variance = splats_.kernels[splat.kernel];
     if (!(splat.flatness > 0)) return variance;
-    return kernels::flattened(variance, glm::normalize(dvec3(splat.normal)),
-                              1 / (1 - static_cast<double>(splat.flatness)));
+    return kernels::flattened(variance, glm::normalize(dvec3(splat.normal)), flattening(splat));
+  }
+
+  // s of Zwicker 2002, Eq. 37.
+  static double flattening(const kernels::VolumeSplat& splat) {
+    return 1 / (1 - static_cast<double>(splat.flatness));
   }
 
   HostVoxel look_at(const kernels::VolumeSplat& splat) const {
@@ -131,7 +135,8 @@ class Recorder {
     voxel.color =
         kernels::shaded(settings_.light, kernels::Projection::perspective, camera, normal, splat.color);
     double weight = static_cast<double>(splat.weight);
-    if (voxel.flat) weight *= std::abs(glm::dot(normal, glm::normalize(camera)));
+    if (voxel.flat)
+      weight *= kernels::flattened_weight(glm::dot(normal, glm::normalize(camera)), flattening(splat));
     voxel.weight = static_cast<float>(weight);
     voxel.opacity =
         static_cast<float>(weight * print->peak * kernels::opacity_scale(view_, settings_.cutoff));

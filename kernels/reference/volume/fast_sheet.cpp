@@ -153,6 +153,12 @@ HWY_INLINE Symmetric2 variance(const FastVolumeView& view, const Lanes& lanes, V
                    lanes[Lanes::flatness]);
 }
 
+// flattened_weight, of 1 - 1/s.
+HWY_INLINE V flattened_weight(V cosine, V flatness) {
+  const V one = set(1.0f), squared = hn::Min(square(cosine), one);
+  return hn::Sqrt(hn::Add(squared, hn::Mul(hn::Sub(one, squared), square(hn::Sub(one, flatness)))));
+}
+
 HWY_INLINE void project_batch(const FastVolumeView& view, const SpecularTable& table, const Lanes& lanes,
                               Batch& batch) {
   const V one = set(1.0f), zero = hn::Zero(F{}), eta = set(view.eta);
@@ -177,8 +183,9 @@ HWY_INLINE void project_batch(const FastVolumeView& view, const SpecularTable& t
   const V determinant = prefilter(view.prefilter, v);
   V opacity = hn::Mul(hn::Mul(lanes[Lanes::weight], set(view.opacity_scale)),
                       hn::Div(determinant_j, hn::Sqrt(determinant)));
-  const M flat = hn::Gt(lanes[Lanes::flatness], zero);
-  opacity = hn::IfThenElse(flat, hn::Mul(opacity, hn::Abs(dot(normal, ray))), opacity);
+  const V flatness = lanes[Lanes::flatness];
+  opacity = hn::IfThenElse(hn::Gt(flatness, zero),
+                           hn::Mul(opacity, flattened_weight(dot(normal, ray), flatness)), opacity);
   const Light light = shade(view, table, normal, ray);
   const auto color = [&](Lanes::Component c) HWY_ATTR {
     return hn::Mul(opacity, hn::Min(hn::Add(hn::Mul(lanes[c], light.matt), light.shine), one));

@@ -104,4 +104,9 @@ glm::dmat3 flattened(const glm::dmat3& variance, const glm::dvec3& normal, doubl
   return squeeze * variance * squeeze;
 }
 
+double flattened_weight(double cosine, double s) {
+  const double squared = std::min(cosine * cosine, 1.0);
+  return std::sqrt(squared + (1 - squared) / (s * s));
+}
+
 }  // namespace splatscope::kernels

@@ -88,4 +88,11 @@ PlacedSamples curvilinear_samples(const Volume& grid, double kernel_variance, co
 // surface splats among volume splats.
 glm::dmat3 flattened(const glm::dmat3& variance, const glm::dvec3& normal, double s);
 
+// What a flattened kernel's footprint is multiplied by, seen along a ray at this cosine to its normal. Over a
+// layer seen at an angle of tangent t footprints add up to sqrt(1 + t^2) times what they do straight on, as
+// the path through it is longer; with this to sqrt(1 + (t/s)^2). So it goes from a layer of volume splats at
+// s = 1, where this is 1, to a surface, whose opacity does not grow with its slope, where this is |cosine|. A
+// sphere has, in its middle, the same opacity as before it was flattened.
+double flattened_weight(double cosine, double s);
+
 }  // namespace splatscope::kernels

@@ -44,12 +44,13 @@ class Projector {
     const bool flat = splat.flatness > 0;
     const glm::dvec3 normal = turned == glm::dvec3(0) ? turned : glm::normalize(turned);
     glm::dmat3 variance = shared_ ? *shared_ : camera_variance(view_, splats_.kernels[splat.kernel]);
-    if (flat) variance = flattened(variance, normal, 1 / (1 - static_cast<double>(splat.flatness)));
+    const double s = 1 / (1 - static_cast<double>(splat.flatness));
+    if (flat) variance = flattened(variance, normal, s);
     const auto print = footprint(view_, settings_.projection, settings_.prefilter, camera, variance);
     if (!print) return false;
     result.footprint = *print;
     double opacity = static_cast<double>(splat.weight) * print->peak * scale_;
-    if (flat) opacity *= std::abs(glm::dot(normal, ray_direction(settings_.projection, camera)));
+    if (flat) opacity *= flattened_weight(glm::dot(normal, ray_direction(settings_.projection, camera)), s);
     result.color =
         opacity * glm::dvec4(shaded(settings_.light, settings_.projection, camera, normal, splat.color), 1);
     const glm::dvec2 reach = print->reach(settings_.cutoff), center = print->center;

@@ -43,10 +43,11 @@ struct VolumePicture {
   std::size_t sheets = 0;          // that have a splat in the picture
 };
 
-// Sheets are the layers of voxels along the axis most parallel to the line of sight. The splats of each add
-// up: weight by footprint, divided by the part of a Gaussian within the cutoff; opacities above 1 count as 1.
-// The sheets are composited from back to front. A flat kernel's opacity does not grow with the slope of its
-// plane, as a surface's does not. Several threads; the same bits for any number of them.
+// Sheets are the layers of voxels along the axis most parallel to the line of sight (sheet_axis). The splats
+// of each add up: weight by footprint, divided by the part of a Gaussian within the cutoff; opacities above 1
+// count as 1. The sheets are composited from back to front. A flat kernel's opacity grows the less with the
+// slope of its plane the flatter it is (flattened_weight), and a surface's not at all. Several threads; the
+// same bits for any number of them.
 VolumePicture volume_picture(const View& view, const VolumeSplats& splats, const VolumeSettings& settings,
                              const std::function<void(double)>& progress = {});
 

@@ -127,6 +127,28 @@ TEST(VolumeRendering, OpacityOfFlatKernelsDoesNotGrowWithTheirSlope) {
   }
 }
 
+// From a layer of volume splats to a surface without a step, whatever the cells are like.
+TEST(VolumeRendering, TheFlatterAKernelTheLessItsOpacityGrowsWithItsSlope) {
+  for (const double depth : {0.1, 0.02}) {
+    const Volume volume = constant_volume({60, 60, 1}, {0.1, 0.1, depth});
+    const double straight_on = 0.3 * std::cbrt(depth * depth / 0.01);
+    for (const double s : {1.0, 1.0001, 1.5, 4.0, 1e4}) {
+      const VolumeSplats splats =
+          grid_splats(volume, kGlass, 1, {.low = 0, .high = 1, .s = s, .normal = glm::dvec3(0, 0, 1)});
+      for (const double angle : {0.0, 0.4, 0.7}) {
+        const glm::dvec3 eye{0, 20 * std::sin(angle), 20 * std::cos(angle)};
+        const View view = look_at(eye, {0, 0, 0}, {0, 1, 0}, 10, 60, 60, 0.1, 100);
+        const VolumeSettings settings{.light = kUnshaded, .axis = 2};
+        const double expected = straight_on * std::hypot(1, std::tan(angle) / s);
+        EXPECT_NEAR(volume_picture(view, splats, settings).pixels[30 * 60 + 30].w / expected, 1, 0.0025)
+            << depth << " " << s << " " << angle;
+        EXPECT_NEAR(FastVolume(splats).draw(view, settings).pixels[30 * 60 + 30].w / expected, 1, 0.0075)
+            << depth << " " << s << " " << angle;
+      }
+    }
+  }
+}
+
 // A quarter of a ring and a whole one: where layers bend round, some would be composited from front to back.
 TEST(VolumeRendering, SheetsAreTheLayersOfAGridWhereAllFaceTheEye) {
   const Volume grid = constant_volume({16, 4, 3}, glm::dvec3(1));

@@ -51,6 +51,17 @@ TEST(Volume, FlatteningShrinksAlongTheNormalAlone) {
   EXPECT_NEAR(glm::dot(across, flat * normal), 0, 1e-12);
 }
 
+TEST(Volume, AFlattenedSphereHasTheOpacityOfTheSphereInItsMiddle) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, 2));
+  // Seen along z: what is integrated goes with the root of the determinant across it.
+  for (const double s : {1.0, 1.001, 2.0, 100.0}) {
+    const double across = glm::determinant(glm::dmat2(flattened(glm::dmat3(1.0), normal, s)));
+    EXPECT_NEAR(flattened_weight(normal.z, s), std::sqrt(across), 1e-12) << s;
+  }
+  EXPECT_EQ(flattened_weight(-0.3, 1), 1);
+  EXPECT_NEAR(flattened_weight(-0.3, 1e4), 0.3, 1e-7);
+}
+
 TEST(Volume, CurvilinearKernelsFollowTheMap) {
   const Volume grid = ramp();
   const auto [samples, layers] = curvilinear_samples(grid, 1, [&](const glm::ivec3& voxel) {
