@@ -41,7 +41,8 @@ std::span<const SceneKey> volume_keys() {
       {"volume", "samples", "", "irregular data in the place of a grid (PLY), relative to the scene file",
        TextValue{[](S& s) -> std::string& { return s.volume.samples; }, ""}},
       {"volume", "transfer", "",
-       "opacity of a layer of voxels and colour by value, straight lines between; none: a grey ramp",
+       "opacity and colour by value, straight lines between; the opacity of a path as long as the cube root "
+       "of the voxel's cell, which is that of a layer of voxels where they are cubes; none: a grey ramp",
        TransferValue{[](S& s) -> std::vector<kernels::TransferPoint>& { return s.volume.transfer; }}},
       {"volume", "kernel_variance", "squared voxels", "of the reconstruction kernels along each axis",
        RealValue{[](S& s) -> double& { return s.volume.kernel_variance; }, 1, 0.01, 100}},

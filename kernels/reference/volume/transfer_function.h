@@ -7,7 +7,7 @@ namespace splatscope::kernels {
 
 // What a value looks like.
 struct VoxelLook {
-  double opacity = 0;  // of a layer of voxels seen straight on, in [0, 1]
+  double opacity = 0;  // of a path of the cube root of the voxel's cell, in [0, 1]
   glm::dvec3 color{};  // r g b, each in [0, 1]
 };
 

@@ -20,7 +20,7 @@ struct VolumeSplat {
   glm::vec3 position{};  // object units
   glm::vec3 normal{};    // of unit length along the gradient, toward larger values; 0 where there is none
   glm::vec3 color{};     // r g b, unshaded
-  // Opacity times cell^(2/3), object units squared: over a layer of voxels seen straight on, these times the
+  // Opacity times cell^(2/3), object units squared: over a layer of cubes seen straight on, these times the
   // kernels of unit integral add up to the opacity.
   float weight = 0;
   float flatness = 0;        // 1 - 1/s of Eq. 37, along the normal: 0 for a volume splat
