@@ -6,6 +6,7 @@
 #include <random>
 #include <tuple>
 
+#include "model/error.h"
 #include "sim/fidelity/stretches.h"
 #include "sim/fidelity/thinning.h"
 
@@ -110,6 +111,8 @@ class Sampler {
     note(0);
     machine_->run();
     note(machine_->cycles());
+    if (notes_.size() != intervals_.size() + 1)
+      throw ModelError("sampling: a mark of a thinned draw was not met, or met twice");
     weigh();
     Result result;
     result.cycles = static_cast<Cycle>(std::llround(estimated(machine_->cycles())));
@@ -167,12 +170,15 @@ class Sampler {
 
   void thin_draw(DrawJob& job, Population& population, const std::vector<double>& expected) {
     ThinDraw& thin = thin_.emplace_back(job);
+    const std::size_t triangles = job.work->triangles.size();
+    const std::size_t stretches = (triangles + kStretch - 1) / kStretch;
     std::size_t kept = 0;  // stretches
     const auto keep = [&](std::size_t from, std::size_t to, Role role, double clocks) {
       from = std::max(from, kept);
+      to = std::min(to, stretches);  // the mark of a part without triangles would never be met
       if (from >= to) return;
       kept = to;
-      thin.keep(from * kStretch, std::min(to * kStretch, job.work->triangles.size()));
+      thin.keep(from * kStretch, std::min(to * kStretch, triangles));
       intervals_.push_back({role, &population, clocks});
     };
     keep(0, kHead, Role::exact, 0);
@@ -184,7 +190,7 @@ class Sampler {
     }
     const std::size_t end = kHead + expected.size() * kUnit;
     keep(end - kWarming, end, Role::warming, 0);
-    keep(end, job.work->triangles.size() / kStretch + 1, Role::exact, 0);
+    keep(end, stretches, Role::exact, 0);
     job = thin.job();
   }
 
