@@ -106,6 +106,8 @@ class RandomMaker {
     made.host.write_bytes_per_clock = int(number(1, 16));
     if (chance(0.2)) made.numbers.frame = FrameFormat::float32;  // lines over several memory channels
     if (chance(0.2)) made.numbers.depth = DepthFormat::z16;
+    if (chance(0.1)) made.memory.row_bytes = 65536;  // the ends of the ranges
+    if (chance(0.1)) made.memory.interleave_bytes = made.memory.row_bytes;
     return made;
   }
 

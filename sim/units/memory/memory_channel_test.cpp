@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "model/machine/parameters.h"
 #include "sim/testing/bench.h"
 
 namespace splatscope::sim {
@@ -138,6 +141,18 @@ TEST(MemoryChannel, ASmallReadCostsAWholeBurst) {
   Machine::Memory fine = spec();
   fine.burst_bytes = 8;
   EXPECT_EQ(serve({{0, 8}, {64, 16}}, fine).answers, (std::vector<Cycle>{12, 14}));
+}
+
+// A clear asks for all that lies on a channel side by side.
+TEST(MemoryChannel, ARequestMayBeOfAllThatTheInterleaveMayBe) {
+  const auto parameter =
+      std::ranges::find(machine::parameters(), "memory.interleave_bytes", &machine::Parameter::name);
+  const auto most = static_cast<std::uint32_t>(std::get<machine::IntegerField>(parameter->field).most);
+  Machine::Memory memory = spec();
+  memory.interleave_bytes = memory.row_bytes = static_cast<int>(most);
+  EXPECT_EQ(serve({{0, most}}, memory).answers, (std::vector<Cycle>{2 + 5 + 4 + most / 8}));
+  memory.burst_bytes = 8;
+  EXPECT_EQ(serve({{0, most, true}}, memory).written, 2 + 5 + 4 + most / 8);
 }
 
 TEST(MemoryPort, ConsecutiveAddressesGoRoundTheChannels) {

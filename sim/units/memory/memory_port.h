@@ -11,7 +11,7 @@ namespace splatscope::sim {
 struct MemoryRequest {
   std::uint32_t address = 0;  // bytes
   std::uint32_t slot = 0;     // where the answer goes
-  std::uint16_t bytes = 0;
+  std::uint32_t bytes = 0;    // up to memory.interleave_bytes
   bool write = false;
 };
 
@@ -43,11 +43,11 @@ class MemoryPort {
   void read(Cycle now, std::uint32_t address, std::uint32_t bytes) {
     const auto slot = static_cast<std::uint32_t>(next_read_++ & mask_);
     returns_[slot] = {kNever, &channel_of(address).consumer()};
-    channel_of(address).push(now, {address, slot, static_cast<std::uint16_t>(bytes), false});
+    channel_of(address).push(now, {address, slot, bytes, false});
   }
   void write(Cycle now, std::uint32_t address, std::uint32_t bytes) {
     ++writes_in_flight_;
-    channel_of(address).push(now, {address, 0, static_cast<std::uint16_t>(bytes), true});
+    channel_of(address).push(now, {address, 0, bytes, true});
   }
 
   // The oldest read not released: when its data is there (kNever: not known yet; then await() has the client
