@@ -119,7 +119,8 @@ void expect_used(const Options& options, studies::Fidelity fidelity) {
 void run(const Options& options, bool quiet) {
   expect_apart(options, {});
   Machine machine = machine::load(options.machine);
-  for (const std::string& assignment : options.settings) machine::set(machine, assignment);
+  for (const std::string& assignment : options.settings) machine::assign(machine, assignment);
+  machine::check(machine);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   expect_used(options, fidelity);
   std::optional<kernels::ScreenMap> map;

@@ -43,7 +43,7 @@ void run(const Options& options, bool quiet) {
       {"a result in --out", std::filesystem::path(options.out) / "results.json"}};
   traces::expect_apart(written, {{"INPUT", options.input}, {"--machine", options.machine}});
   Machine machine = machine::load(options.machine);
-  for (const std::string& assignment : options.settings) machine::set(machine, assignment);
+  for (const std::string& assignment : options.settings) machine::assign(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   const auto swept = studies::swept_parameters(options.swept, options.settings);
   std::optional<traces::OutputFolder> folder;

@@ -43,7 +43,8 @@ std::vector<SweepPoint> combine(const std::vector<SweptParameter>& parameters) {
 
 Machine machine_of(const Machine& machine, const SweepPoint& point) {
   Machine changed = machine;
-  for (const auto& [key, value] : point.settings) machine::set(changed, key + "=" + value, "--sweep");
+  for (const auto& [key, value] : point.settings) machine::assign(changed, key + "=" + value, "--sweep");
+  machine::check(changed);
   return changed;
 }
 

@@ -38,10 +38,10 @@ struct Sweep {
   double host_seconds = 0;
 };
 
-// Every combination of the values, the last parameter running fastest, on `machine`. Parameters that the
-// function depends on (numbers.*, vertex.cache_entries) may be swept too: it is then computed for each.
-// Timings run in as many processes as the host has threads. `before_work` is called once all input is found
-// right, with that.
+// Every combination of the values, the last parameter running fastest, on `machine`, whose own parameters
+// need fit together only with those values. Parameters that the function depends on (numbers.*,
+// vertex.cache_entries) may be swept too: it is then computed for each. Timings run in as many processes as
+// the host has threads. `before_work` is called once all input is found right, with that.
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
                 const std::optional<std::filesystem::path>& cache, const Progress& progress = {},

@@ -89,6 +89,25 @@ TEST_F(Sweeps, EveryPointIsWhatARunOfItsOwnSays) {
   EXPECT_EQ(json["points"][5]["set"]["memory.channels"], "4");
 }
 
+// It need fit together only once all of it is there; and does so before anything is run.
+TEST_F(Sweeps, TheMachinesAreCheckedWithAllTheirParameters) {
+  machine::assign(machine, "memory.interleave_bytes=4096");
+  const auto sweep = [&](std::vector<std::string> rows) {
+    return run_sweep(file, machine, {{"memory.row_bytes", std::move(rows)}}, Fidelity::cycle, {}, {},
+                     [](const Opened&) { FAIL() << "a machine is wrong"; });
+  };
+  try {
+    sweep({"8192", "2048"});
+    FAIL() << "no UserError";
+  } catch (const UserError& error) {
+    EXPECT_STREQ(error.what(),
+                 "--set: memory.interleave_bytes is 4096, expected at most memory.row_bytes (2048)");
+  }
+  const Sweep good =
+      run_sweep(file, machine, {{"memory.row_bytes", {"4096", "8192"}}}, Fidelity::throughput, {});
+  EXPECT_EQ(good.points.size(), 2u);
+}
+
 TEST_F(Sweeps, TheFunctionIsComputedForEachOfItsFormats) {
   const Sweep sweep =
       run_sweep(file, machine, {{"vertex.cache_entries", {"1", "18"}}, {"setup.latency", {"5", "6"}}},

@@ -23,6 +23,24 @@ TEST(CommandLine, AStandardStreamIsNoPlaceForAFile) {
   }
 }
 
+// Parameters that fit together may come in any order, and some of them from a sweep.
+TEST(CommandLine, TheOrderOfSettingsDoesNotMatter) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const std::string interleave = "memory.interleave_bytes=4096", row = "memory.row_bytes=4096";
+  for (const std::vector<std::string>& settings :
+       {std::vector<std::string>{"run", "--set", interleave, "--set", row},
+        {"run", "--set", row, "--set", interleave},
+        {"sweep", "--set", interleave, "--sweep", row + ",8192"},
+        {"sweep", "--sweep", interleave + ",8192", "--sweep", "memory.row_bytes=8192"}}) {
+    std::vector<std::string> arguments = settings;
+    for (const char* more : {"--fidelity", "throughput", "--out", "o", "small.toml"})
+      arguments.push_back(more);
+    const Outcome outcome = run_program(arguments, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+  }
+}
+
 // What an option is about must be there, and of values a key has one.
 TEST(CommandLine, OptionsWithoutAnEffectAreRefused) {
   const ScratchFolder folder;
@@ -40,6 +58,10 @@ TEST(CommandLine, OptionsWithoutAnEffectAreRefused) {
   refused("sweep", {"--sweep", "vertex.units=1", "--sweep", "vertex.units=2"}, "vertex.units is given twice");
   refused("sweep", {"--sweep", "vertex.units=1", "--set", "vertex.units=2"}, "vertex.units is swept");
   refused("sweep", {"--sweep", "vertex.units=99"}, "--sweep: vertex.units is out of range (99)");
+  refused("run", {"--set", "memory.interleave_bytes=4096"},
+          "--set: memory.interleave_bytes is 4096, expected");
+  refused("sweep", {"--set", "memory.interleave_bytes=4096", "--sweep", "memory.row_bytes=4096,2048"},
+          "--set: memory.interleave_bytes is 4096, expected at most memory.row_bytes (2048)");
 }
 
 TEST(CommandLine, WrongRunsAreRefusedAndLeaveNothing) {

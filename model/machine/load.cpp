@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kConfidences{"published", "measured", "inferred", "fitted",
                                                        "stand-in"};
+constexpr std::string_view kSet = "set";  // the confidence of what an option gave
 
 struct Place {
   std::string_view file;
@@ -156,8 +157,18 @@ void read_parameter(Machine& machine, const std::string& name, const toml::node&
   machine.origins[name] = read_origin(*table, name, file);
 }
 
-// Sizes that address arithmetic splits by bits, and groups of parameters that must fit together.
-void check_together(const Machine& machine, const Place& place) {
+// Where one of these parameters was set: the option, else `file`.
+Place set_by(const Machine& machine, std::initializer_list<std::string_view> names, std::string_view file) {
+  for (const std::string_view name : names) {
+    const auto origin = machine.origins.find(name);
+    if (origin != machine.origins.end() && origin->second.confidence == kSet) return {origin->second.source};
+  }
+  return {file};
+}
+
+// Sizes that address arithmetic splits by bits, and groups of parameters that must fit together. `file` gave
+// those that no option set.
+void check_together(const Machine& machine, std::string_view file) {
   const std::pair<std::string_view, int> powers[] = {
       {"fetch.line_bytes", machine.fetch.line_bytes},
       {"fetch.cache_lines", machine.fetch.cache_lines},
@@ -177,7 +188,8 @@ void check_together(const Machine& machine, const Place& place) {
       {"memory.channel_bytes_per_clock", machine.memory.channel_bytes_per_clock},
   };
   for (const auto& [name, value] : powers) {
-    if ((value & (value - 1)) != 0) place.fail(fmt::format("{} is {}, expected a power of two", name, value));
+    if ((value & (value - 1)) == 0) continue;
+    set_by(machine, {name}, file).fail(fmt::format("{} is {}, expected a power of two", name, value));
   }
   const std::tuple<std::string_view, int, std::string_view, int> pairs[] = {
       {"fetch.line_bytes", machine.fetch.line_bytes, "memory.interleave_bytes",
@@ -196,8 +208,9 @@ void check_together(const Machine& machine, const Place& place) {
       {"blend.cache_ways", machine.blend.cache_ways, "blend.cache_lines", machine.blend.cache_lines},
   };
   for (const auto& [name, value, limit_name, limit] : pairs) {
-    if (value > limit)
-      place.fail(fmt::format("{} is {}, expected at most {} ({})", name, value, limit_name, limit));
+    if (value <= limit) continue;
+    set_by(machine, {name, limit_name}, file)
+        .fail(fmt::format("{} is {}, expected at most {} ({})", name, value, limit_name, limit));
   }
 }
 
@@ -262,7 +275,7 @@ Machine parse(std::string_view text, std::string_view file) {
     }
   }
   if (!root.contains("base")) check_own_machine(machine, {file, 0});
-  check_together(machine, {file, 0});
+  check_together(machine, file);
   return machine;
 }
 
@@ -278,7 +291,7 @@ Machine load(std::string_view name_or_path) {
   return parse(read_text_file(name_or_path, "a machine in TOML"), name_or_path);
 }
 
-void set(Machine& machine, std::string_view assignment, std::string_view option) {
+void assign(Machine& machine, std::string_view assignment, std::string_view option) {
   const Place place{option, 0};
   const auto equals = assignment.find('=');
   if (equals == std::string_view::npos) {
@@ -299,8 +312,16 @@ void set(Machine& machine, std::string_view assignment, std::string_view option)
         fmt::format("{} has no valid value in \"{}\", expected {}", name, assignment, expected(parameter)));
   }
   assign(machine, parameter, *table.get("value"), place);
-  check_together(machine, place);
-  machine.origins[name] = {"set", std::string(option), ""};
+  machine.origins[name] = {std::string(kSet), std::string(option), ""};
+}
+
+void check(const Machine& machine) {
+  check_together(machine, machine.name);
+}
+
+void set(Machine& machine, std::string_view assignment, std::string_view option) {
+  assign(machine, assignment, option);
+  check(machine);
 }
 
 std::vector<ParameterValue> describe(const Machine& machine) {

@@ -151,7 +151,14 @@ Machine load(std::string_view name_or_path);
 // The same from text; `file` is for messages and becomes the machine's name without folder and ".toml".
 Machine parse(std::string_view text, std::string_view file);
 
-// One parameter: "vertex.units=4". UserError (file `option`) where key, type or value is wrong.
+// One parameter: "vertex.units=4". UserError (file `option`) where key, type or value is wrong. What must fit
+// together is left to check(): then the order of several does not matter.
+void assign(Machine& machine, std::string_view assignment, std::string_view option = "--set");
+
+// That the parameters fit together. UserError (file: the option that gave the value, else the machine).
+void check(const Machine& machine);
+
+// Both, where there is one assignment.
 void set(Machine& machine, std::string_view assignment, std::string_view option = "--set");
 
 // A parameter as `machine show` prints it.

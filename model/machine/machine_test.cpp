@@ -157,6 +157,31 @@ TEST(Machine, SetRefusesWhatAFileMayNotHold) {
             "--set: texture.line_bytes is 128, expected at most memory.interleave_bytes (64)");
 }
 
+TEST(Machine, WhatFitsTogetherMayBeAssignedInAnyOrder) {
+  const auto error_of = [](const Machine& machine) -> std::string {
+    try {
+      check(machine);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Machine machine = load("geforce4-ti4400");
+  assign(machine, "memory.interleave_bytes=4096");
+  EXPECT_EQ(error_of(machine),
+            "--set: memory.interleave_bytes is 4096, expected at most memory.row_bytes (1024)");
+  assign(machine, "memory.row_bytes=4096", "--sweep");
+  EXPECT_EQ(error_of(machine), "");
+  assign(machine, "memory.row_bytes=3000", "--sweep");
+  EXPECT_EQ(error_of(machine), "--sweep: memory.row_bytes is 3000, expected a power of two");
+  // What the machine itself has may be what another parameter no longer leaves room for.
+  machine = load("geforce4-ti4400");
+  machine.memory.interleave_bytes = 1024;
+  assign(machine, "memory.row_bytes=512");
+  EXPECT_EQ(error_of(machine),
+            "--set: memory.interleave_bytes is 1024, expected at most memory.row_bytes (512)");
+}
+
 TEST(Machine, AMissingFileIsAUsersError) {
   EXPECT_THROW(load("no/such.toml"), UserError);
   EXPECT_THROW(load("voodoo"), UserError);
