@@ -9,6 +9,7 @@
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "model/error.h"
 #include "model/isa/opcode.h"
@@ -145,7 +146,7 @@ void ShaderDebugger::step(std::ostream& out) {
     out << fmt::format("        {} before = {}\n        {} after  = {}\n", name, text_of((*values)[at_]),
                        name, text_of((*values)[end]));
   }
-  at_ = end;
+  from_ = std::exchange(at_, end);
   if (at_end()) out << "end of the program\n";
 }
 
@@ -153,11 +154,12 @@ void ShaderDebugger::run_while(std::ostream& out, const std::function<bool()>& g
   while (!at_end() && go_on()) step(out);
 }
 
+// In the last step.
 bool ShaderDebugger::watched_changed() const {
-  return at_ > 0 && std::ranges::any_of(watched_, [&](const std::string& name) {
-           const auto* values = find(name);
-           return !same_bits((*values)[at_ - 1], (*values)[at_]);
-         });
+  return std::ranges::any_of(watched_, [&](const std::string& name) {
+    const auto* values = find(name);
+    return !same_bits((*values)[from_], (*values)[at_]);
+  });
 }
 
 void ShaderDebugger::print(const std::vector<std::string>& names, std::ostream& out) const {

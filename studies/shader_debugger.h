@@ -49,7 +49,8 @@ class ShaderDebugger {
   std::array<Vec4, 16> inputs_{};
   History history_;
   std::vector<std::string> watched_;
-  std::size_t at_ = 0;  // instructions done
+  std::size_t at_ = 0;    // instructions done
+  std::size_t from_ = 0;  // and before the last step: a pair is one
 };
 
 }  // namespace splatscope::studies

@@ -38,12 +38,20 @@ TEST(ShaderDebugger, RunsToALineAndBack) {
 }
 
 TEST(ShaderDebugger, ContinuesUntilAWatchedRegisterChanges) {
-  EXPECT_EQ(transcript(kProgram, "watch oPos\nstep\ncontinue\nlist\n", kInputs).find("end of the program") ==
-                std::string::npos,
-            false);
-  const std::string stopped =
-      transcript("vs_1_1\nmov r1, v0\nmov r0, v0\nmov oPos, r0\n", "watch r0\ncontinue\nlist\n", kInputs);
-  EXPECT_NE(stopped.find(">   4  mov oPos, r0\n"), std::string::npos) << stopped;
+  const auto stops_before = [](const std::string& instruction, const std::string& program,
+                               const std::string& commands) {
+    const std::string text = transcript(program, commands + "list\n", kInputs);
+    EXPECT_EQ(text.find("end of the program"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n>   " + instruction + "\n"), std::string::npos) << text;
+  };
+  const std::string vertex = "vs_1_1\nmov r1, v0\nmov r0, v0\nmov oPos, r0\nmov oT0, r0\n";
+  stops_before("4  mov oPos, r0", vertex, "watch r0\ncontinue\n");
+  stops_before("5  mov oT0, r0", vertex, "watch oPos\nstep\ncontinue\n");
+  stops_before("5  mov oT0, r0", vertex, "watch r0\nwatch oPos\ncontinue\ncontinue\n");
+  stops_before("4  mov r1, v0", "ps_1_1\nmul r0.rgb, v0, v0\n+ mov r0.a, v0\nmov r1, v0\n",
+               "watch r0\ncontinue\n");
+  const std::string never = transcript("vs_1_1\nmov r0, c0\nmov oPos, v0\n", "watch r0\ncontinue\n", kInputs);
+  EXPECT_NE(never.find("end of the program"), std::string::npos) << never;
 }
 
 TEST(ShaderDebugger, PairsAreOneStepAndRelativeConstantsAreFollowed) {
