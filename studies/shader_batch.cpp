@@ -62,7 +62,7 @@ ordered_json run_vertex(const ShaderCase& test, const isa::Program& program, Ari
 ordered_json run_pixel(const ShaderCase& test, const isa::Program& program) {
   const auto batch = test.fragment();
   const pixel::PixelProgram runnable(program);
-  runnable.run(test.constants(), *batch, 1, test.textures());
+  runnable.run(test.constants(), *batch, 1, test.textures(), test.bump());
   ordered_json outputs;
   outputs["r0"] = hex_of({batch->r0[0][0], batch->r0[1][0], batch->r0[2][0], batch->r0[3][0]});
   if (runnable.writes_depth())

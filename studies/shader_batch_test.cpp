@@ -43,6 +43,24 @@ TEST(ShaderBatch, TokensAndPixelPrograms) {
       R"({"id":"k","outputs":{"r0":["00000000","00000000","00000000","00000000"],"depth":["3f000000"],"killed":true}})");
 }
 
+// bem: 0.5 + 0.25*0.5 + 0.5*0.25 and 0.25 + 1*0.5 - 1*0.25. texbeml: the texel times 0.25*1 + 0.5.
+TEST(ShaderBatch, BumpStagesAreGivenAsTheStateOfAStage) {
+  const std::string stage = R"(["3e800000", "3f800000", "3f000000", "bf800000", "3f800000", "3f000000"])";
+  EXPECT_EQ(run(R"({"id": 1, "program": "ps_1_4\ntexcrd r0.rgb, t0\ntexcrd r1.rgb, t1\nbem r0.rg, r0, r1\n)"
+                R"(phase\nmov r0.rgb, r0\n+ mov r0.a, c0\n", "texcoords": {"t0": ["3f000000", "3e800000",)"
+                R"( "0", "0"], "t1": ["3f000000", "3e800000", "0", "0"]}, "bump": {"t0": )" +
+                stage + "}}"),
+            R"({"id":1,"outputs":{"r0":["3f400000","3f000000","00000000","00000000"]}})");
+  const std::string texbeml =
+      R"({"id": 2, "program": "ps_1_1\ntex t0\ntexbeml t1, t0\nmov r0, t1\n", "textures": )"
+      R"({"t0": ["0", "0", "3e800000", "0"], "t1": ["3f000000", "3e800000", "3f800000", "3f800000"]}, "bump": )";
+  EXPECT_EQ(run(texbeml + R"({"t1": )" + stage + "}}"),
+            R"({"id":2,"outputs":{"r0":["3ec00000","3e400000","3f400000","3f400000"]}})");
+  EXPECT_EQ(run(texbeml + R"({"t1": ["0", "0", "0", "0"]}})"),
+            R"({"id":2,"error":"0: t1 is no array of six, expected six words in hex"})");
+  EXPECT_EQ(run(texbeml + R"({"t6": []}})"), R"({"id":2,"error":"0: bump has \"t6\", expected t0 to t5"})");
+}
+
 TEST(ShaderBatch, AProgramThatDoesNotLoadIsAnErrorWithItsLine) {
   EXPECT_EQ(run(R"({"id": "b", "program": "vs_1_1\nmov oPos, q0\n"})"),
             R"({"id":"b","error":"2: column 11: 'q0' is not a register of vs_1_1"})");

@@ -59,8 +59,8 @@ ShaderCase ShaderCase::of_object(ordered_json object, std::string_view file, int
 
 ShaderCase::ShaderCase(std::string_view file, int line, ordered_json object)
     : case_(std::move(object)), file_(file), line_(line) {
-  constexpr std::string_view kKeys[] = {"id",     "program",   "tokens",  "constants",
-                                        "inputs", "texcoords", "textures"};
+  constexpr std::string_view kKeys[] = {"id",     "program",   "tokens",   "constants",
+                                        "inputs", "texcoords", "textures", "bump"};
   for (const auto& [key, value] : case_.items())
     if (std::ranges::find(kKeys, key) == std::end(kKeys))
       fail(fmt::format("unknown key {}, expected one of {}", quote_of(key), fmt::join(kKeys, ", ")));
@@ -96,15 +96,17 @@ std::uint32_t ShaderCase::word_of(std::string_view what, const ordered_json& hex
   return word;
 }
 
-Vec4 ShaderCase::vector_of(std::string_view name, const ordered_json& hex) const {
-  if (!hex.is_array() || hex.size() != 4)
-    fail(fmt::format("{} is no array of four, expected four words in hex", name));
-  Vec4 value{};
-  for (std::size_t i = 0; i < 4; ++i) value[i] = std::bit_cast<float>(word_of(name, hex[i]));
+template <std::size_t words>
+std::array<float, words> ShaderCase::vector_of(std::string_view name, const ordered_json& hex) const {
+  constexpr std::string_view kNumber = words == 4 ? "four" : "six";
+  if (!hex.is_array() || hex.size() != words)
+    fail(fmt::format("{0} is no array of {1}, expected {1} words in hex", name, kNumber));
+  std::array<float, words> value{};
+  for (std::size_t i = 0; i < words; ++i) value[i] = std::bit_cast<float>(word_of(name, hex[i]));
   return value;
 }
 
-template <typename Set>
+template <std::size_t words, typename Set>
 void ShaderCase::registers(std::string_view group, char letter, int count, Set set) const {
   if (!case_.contains(group)) return;
   if (!case_[group].is_object()) fail(fmt::format("\"{}\" is no object", group));
@@ -114,7 +116,7 @@ void ShaderCase::registers(std::string_view group, char letter, int count, Set s
     const bool number = name.size() > 1 && std::from_chars(name.data() + 1, end, index).ptr == end;
     if (!number || name[0] != letter || index < 0 || index >= count)
       fail(fmt::format("{} has {}, expected {}0 to {}{}", group, quote_of(name), letter, letter, count - 1));
-    set(static_cast<std::size_t>(index), vector_of(name, value));
+    set(static_cast<std::size_t>(index), vector_of<words>(name, value));
   }
 }
 
@@ -151,6 +153,14 @@ pixel::Sampler ShaderCase::textures() const {
   return [texels](int stage, const pixel::Lanes*, pixel::Lanes* texel, int) {
     for (std::size_t c = 0; c < 4; ++c) texel[c][0] = texels[static_cast<std::size_t>(stage)][c];
   };
+}
+
+pixel::BumpStages ShaderCase::bump() const {
+  pixel::BumpStages stages{};
+  registers<6>("bump", 't', pixel::kStages, [&](std::size_t i, const std::array<float, 6>& value) {
+    stages[i] = {{{value[0], value[1]}, {value[2], value[3]}}, value[4], value[5]};
+  });
+  return stages;
 }
 
 }  // namespace splatscope::studies

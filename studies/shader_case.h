@@ -39,16 +39,18 @@ class ShaderCase {
   std::unique_ptr<vertex::InputBatch> vertex_inputs() const;  // in every lane
   std::unique_ptr<pixel::FragmentBatch> fragment() const;     // in lane 0
   pixel::Sampler textures() const;                            // constant 1x1 textures, for lane 0
+  pixel::BumpStages bump() const;
 
  private:
   ShaderCase(std::string_view file, int line, nlohmann::ordered_json object);
   [[noreturn]] void fail(std::string_view message) const;
   std::uint32_t word_of(std::string_view what, const nlohmann::ordered_json& hex) const;
-  Vec4 vector_of(std::string_view name, const nlohmann::ordered_json& hex) const;
+  template <std::size_t words>
+  std::array<float, words> vector_of(std::string_view name, const nlohmann::ordered_json& hex) const;
 
   // Calls set(index, value) for the registers of a group ("constants": c0, c1, ...), whose indices are below
   // `count`.
-  template <typename Set>
+  template <std::size_t words = 4, typename Set>
   void registers(std::string_view group, char letter, int count, Set set) const;
 
   nlohmann::ordered_json case_;

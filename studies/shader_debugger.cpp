@@ -100,7 +100,7 @@ void ShaderDebugger::record_fragment(const ShaderCase& registers) {
     inputs_[1][c] = batch->v1[c][0];
   }
   for (const pixel::FragmentState& state :
-       pixel::PixelProgram(program_).trace(constants_, *batch, registers.textures())) {
+       pixel::PixelProgram(program_).trace(constants_, *batch, registers.textures(), registers.bump())) {
     for (std::size_t i = 0; i < state.temporaries.size(); ++i)
       history_[fmt::format("r{}", i)].push_back(state.temporaries[i]);
     for (std::size_t i = 0; i < state.textures.size(); ++i)
