@@ -63,15 +63,17 @@ class ThroughputEstimate::State {
 
   double core_clocks(double nanoseconds) const { return nanoseconds * machine_.clock.core_megahertz / 1000; }
 
-  // From the first index to the last pixel, where nothing waits.
+  // From the first index to the last pixel, where nothing waits. Draws go past the units that they do not
+  // use.
   double latency(const DrawJob& job) const {
     const double read = machine_.memory.precharge_clocks + machine_.memory.activate_clocks +
                         machine_.memory.cas_clocks + machine_.memory.return_latency;
     const double vertex = static_cast<double>(draws_.vertex_programs[job.vertex_program].size()) *
                           std::max(1, machine_.vertex.vector_latency);
-    const double pixels = job.draw->state.color_write ? machine_.texture.latency + machine_.pixel.latency : 0;
-    return 2 * read + vertex + machine_.setup.latency + machine_.raster.latency + machine_.depth.latency +
-           pixels;
+    const double depth = uses_depth(*job.draw) ? machine_.depth.latency : 0;
+    const double texture = uses_texture(*job.draw) ? machine_.texture.latency : 0;
+    const double pixels = job.draw->state.color_write ? machine_.pixel.latency : 0;
+    return 2 * read + vertex + machine_.setup.latency + machine_.raster.latency + depth + texture + pixels;
   }
 
   void add_clear() {

@@ -47,6 +47,34 @@ TEST(Throughput, ClocksAreQuotientsRoundedUp) {
   }
 }
 
+TEST(Throughput, ADrawPaysForTheUnitsThatItUsesAlone) {
+  const auto cycles_of = [](const Draw& draw, int depth, int texture, int pixel) {
+    RandomTrace made = testing::simple_trace(1);
+    std::get<Draw>(made.trace.commands[1]) = draw;
+    if (!uses_texture(draw)) {
+      for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
+      made.work[0].texel_blocks.clear();
+    }
+    Machine machine = machine::load("geforce4-ti4400");
+    machine.depth.latency = depth;
+    machine.texture.latency = texture;
+    machine.pixel.latency = pixel;
+    return estimate_throughput(made.trace, made.work, machine).cycles;
+  };
+  const Draw whole = std::get<Draw>(testing::simple_trace(1).trace.commands[1]);
+  Draw untextured = whole, no_depth = whole, depth_alone = whole;
+  untextured.texture.reset();
+  no_depth.state.depth_test = no_depth.state.depth_write = false;
+  depth_alone.state.color_write = false;
+  const auto added = [&](const Draw& draw) {
+    return cycles_of(draw, 100, 120, 150) - cycles_of(draw, 10, 10, 10);
+  };
+  EXPECT_EQ(added(whole), 90u + 110u + 140u);
+  EXPECT_EQ(added(untextured), 90u + 140u);
+  EXPECT_EQ(added(no_depth), 110u + 140u);
+  EXPECT_EQ(added(depth_alone), 90u);
+}
+
 TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
   RandomTrace made = testing::simple_trace(10);
   made.trace.commands.emplace_back(NormalizeOnHost{});
