@@ -10,8 +10,44 @@ namespace {
 
 using testing::RandomTrace;
 
+RandomTrace plain() {
+  return testing::simple_trace(4000);
+}
+
+// Every quad in a line of its own, which is clear.
+RandomTrace spread_out() {
+  RandomTrace made = plain();
+  made.trace.width = made.trace.height = 1024;
+  DrawWork& work = made.work[0];
+  for (std::uint32_t i = 0; i < work.quads.size(); ++i) {
+    work.quads[i].x = static_cast<std::uint16_t>(i % 256 * 2);
+    work.quads[i].y = static_cast<std::uint16_t>(i / 256 * 2);
+    work.clear_tiles.push_back({i / 4, i});
+  }
+  return made;
+}
+
+// Four texels a quad, always the same.
+RandomTrace textured() {
+  RandomTrace made = plain();
+  DrawWork& work = made.work[0];
+  work.texel_blocks.clear();
+  for (QuadWork& quad : work.quads) {
+    quad.texel_block_count = 4;
+    work.texel_blocks.insert(work.texel_blocks.end(), {0, 1, 2, 3});
+  }
+  return made;
+}
+
+RandomTrace in_host_memory() {
+  RandomTrace made = plain();
+  for (Buffer& buffer : made.trace.buffers) buffer.place = MemoryPlace::agp;
+  return made;
+}
+
 struct Bottleneck {
-  std::string setting;
+  RandomTrace (*scene)();
+  std::vector<std::string> settings;
   std::string unit;
 };
 
@@ -20,8 +56,9 @@ class Bottlenecks : public ::testing::TestWithParam<Bottleneck> {};
 // Each machine is slow in one unit, which then sets the time of both.
 TEST_P(Bottlenecks, SetTheEstimateAsTheySetTheSimulation) {
   Machine machine = machine::load("geforce4-ti4400");
-  machine::set(machine, GetParam().setting);
-  RandomTrace made = testing::simple_trace(4000);
+  for (const std::string& setting : GetParam().settings) machine::assign(machine, setting);
+  machine::check(machine);
+  const RandomTrace made = GetParam().scene();
   const Result estimate = estimate_throughput(made.trace, made.work, machine);
   const Result simulated = simulate(made.trace, made.work, machine);
   EXPECT_EQ(GetParam().unit, simulated.busiest().name);
@@ -31,11 +68,20 @@ TEST_P(Bottlenecks, SetTheEstimateAsTheySetTheSimulation) {
               0.02 * static_cast<double>(simulated.cycles));
 }
 
-INSTANTIATE_TEST_SUITE_P(Units, Bottlenecks,
-                         ::testing::Values(Bottleneck{"vertex.units=1", "vertex0"},
-                                           Bottleneck{"setup.clocks_per_triangle=64", "setup"},
-                                           Bottleneck{"primitive.clocks_per_triangle=64", "primitive"},
-                                           Bottleneck{"host.command_nanoseconds=1e6", "host"}));
+const Bottleneck kBottlenecks[] = {
+    {plain, {"vertex.units=1"}, "vertex0"},
+    {plain, {"setup.clocks_per_triangle=64"}, "setup"},
+    {plain, {"primitive.clocks_per_triangle=64"}, "primitive"},
+    {plain, {"host.command_nanoseconds=1e6"}, "host"},
+    {spread_out, {"memory.channels=1"}, "memory0"},
+    {textured,
+     {"texture.lookups_per_clock=1", "vertex.units=8", "memory.channel_bytes_per_clock=16",
+      "memory.burst_bytes=16"},
+     "texture"},
+    {in_host_memory, {"agp.bytes_per_clock=1"}, "agp"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Units, Bottlenecks, ::testing::ValuesIn(kBottlenecks));
 
 TEST(Throughput, ClocksAreQuotientsRoundedUp) {
   constexpr std::uint32_t kMost = 1U << 26;
@@ -137,7 +183,6 @@ TEST(Throughput, WhatIfAUnitDividesPixels) {
   EXPECT_GT(cycles(0), 100 * cycles(4)) << "the host reads byte by byte";
 }
 
-// The same units, under the same names, are there and left out.
 TEST(Throughput, NoWorkTakesNoTime) {
   const Result result = estimate_throughput({}, {}, Machine{});
   EXPECT_EQ(result.cycles, 0u);
@@ -147,6 +192,7 @@ TEST(Throughput, NoWorkTakesNoTime) {
   EXPECT_EQ(result.frames_per_second(0), 0);
 }
 
+// The same units, under the same names, are there and left out.
 TEST(Throughput, KnowsTheUnitsThatATraceNeeds) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

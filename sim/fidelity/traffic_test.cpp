@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "sim/testing/random_trace.h"
 
 namespace splatscope::sim {
@@ -32,6 +34,50 @@ TEST(Traffic, ClearLinesOfDepthAreNotRead) {
   EXPECT_EQ(depth_bytes(true, true, {{1, 0}}), 4 * kLine) << "of another triangle";
   EXPECT_EQ(depth_bytes(false, true, {{0, 0}}), 4 * kLine) << "a clear that writes";
   EXPECT_EQ(depth_bytes(true, false, {{0, 0}}), 4 * kLine) << "never cleared";
+}
+
+// Of eight quads, each in a line of its own, that sample one block each, in three lines of the texture. The
+// colour cache holds four lines.
+Traffic color_traffic(const std::function<void(Draw&)>& change) {
+  testing::RandomTrace made = testing::simple_trace(2);
+  made.trace.surfaces = 1;
+  Draw& draw = std::get<Draw>(made.trace.commands[1]);
+  draw.state.blend = false;
+  change(draw);
+  for (std::uint16_t i = 0; i < 8; ++i) {
+    made.work[0].quads[i].x = static_cast<std::uint16_t>(2 * i);
+    made.work[0].quads[i].y = 0;
+  }
+  made.work[0].texel_blocks = {0, 1, 2, 3, 7, 8, 8, 11};
+  Machine machine = machine::load("geforce4-ti4400");
+  machine.blend.cache_lines = 4;
+  machine.blend.cache_ways = 1;
+  machine.texture.line_bytes = 64;
+  machine.texture.fill_bytes = 32;
+  const MemoryLayout layout = lay_out(made.trace, machine);
+  const PreparedDraws draws = prepare_draws(made.trace, made.work, machine, layout);
+  return TrafficCounter(machine, layout).of(draws.jobs[0]);
+}
+
+TEST(Traffic, ColourIsWrittenBackAndReadToBlend) {
+  constexpr double kLine = 64;
+  const double written = 8 * color_traffic([](Draw&) {}).color;
+  EXPECT_EQ(written, 4 * kLine) << "the other four stay";
+  EXPECT_EQ(8 * color_traffic([](Draw& draw) { draw.state.blend = true; }).color, written + 8 * kLine);
+}
+
+TEST(Traffic, AMissReadsAPartOfATextureLineAndAllOfASurfaces) {
+  const Traffic texture = color_traffic([](Draw&) {});
+  EXPECT_EQ(8 * texture.texture, 3 * 32);
+  EXPECT_EQ(texture.texel_blocks, 1);
+  EXPECT_EQ(8 * color_traffic([](Draw& draw) { draw.source = 1; }).texture, 3 * 64);
+}
+
+TEST(Traffic, NoColourIsNoTraffic) {
+  const Traffic none = color_traffic([](Draw& draw) { draw.state.color_write = false; });
+  EXPECT_EQ(none.color, 0);
+  EXPECT_EQ(none.texture, 0);
+  EXPECT_EQ(none.texel_blocks, 0);
 }
 
 }  // namespace
