@@ -1,10 +1,7 @@
 #include "traces/recorder.h"
 
 #include <algorithm>
-#include <iterator>
-#include <ranges>
 
-#include "kernels/object_space_ewa/programs.h"
 #include "model/error.h"
 #include "traces/gamma.h"
 #include "traces/hierarchy/block_trace.h"
@@ -13,31 +10,12 @@
 namespace splatscope::traces {
 namespace {
 
-SplatPass pass_of(Algorithm algorithm) {
-  const bool per_pixel = algorithm == Algorithm::ewa_per_pixel;
-  return {
-      .prefilter = algorithm != Algorithm::no_ewa, .sum_weights = per_pixel, .normalize_on_host = per_pixel};
-}
-
-// Appends the last frame once more, normalised per pixel: progressive refinement (Ren 2002, section 8). The
-// vertices keep their captured weights: with them the sums stay near gamma, and the division takes out what
-// is left.
-void refine(Trace& trace) {
-  const auto program = static_cast<std::uint32_t>(trace.programs.size());
-  trace.programs.push_back(kernels::shader_text(kernels::kWeightedSplatPixelProgram));
-  const auto begin = std::ranges::find_if(trace.commands | std::views::reverse, [](const Command& command) {
-    return std::holds_alternative<Clear>(command);
-  });
-  std::vector<Command> frame(std::prev(begin.base()), trace.commands.end());
-  trace.commands.emplace_back(Present{});
-  for (Command& command : frame) {
-    if (auto* draw = std::get_if<Draw>(&command); draw && draw->pixel_program) {
-      draw->pixel_program = program;
-      draw->state.source_factor = BlendFactor::one;
-    }
-    trace.commands.push_back(std::move(command));
-  }
-  trace.commands.emplace_back(NormalizeOnHost{});
+SplatPass pass_of(const Splatting& splatting) {
+  const bool per_pixel = splatting.algorithm == Algorithm::ewa_per_pixel;
+  return {.prefilter = splatting.algorithm != Algorithm::no_ewa,
+          .sum_weights = per_pixel,
+          .normalize_on_host = per_pixel,
+          .refine = splatting.refine};
 }
 
 // The weights that an algorithm splats with. Per pixel, the sum of the weights must not saturate: gamma keeps
@@ -54,11 +32,13 @@ struct Blocks {
   LdcTree tree;
   std::vector<ChosenFrame> frames;
   std::vector<std::vector<VertexWeights>> weights;  // by level, in the tree's order
+  std::vector<double> gammas;                       // by level
 
   explicit Blocks(const Scene& scene)
       : tree(build_ldc_tree(scene.surfels, scene.hierarchy.block_surfels)),
         frames(choose_blocks(tree, view_of(scene.camera, scene.frame), scene.splatting, scene.hierarchy)),
-        weights(tree.levels.size()) {}
+        weights(tree.levels.size()),
+        gammas(tree.levels.size(), scene.splatting.gamma) {}
 
   // Given in the scene's order.
   void set_finest(std::span<const VertexWeights> given) {
@@ -69,13 +49,13 @@ struct Blocks {
 
 void record_all(const Scene& scene, std::span<const VertexWeights> weights, Recording& out) {
   out.counts.surfels = scene.surfels.size();
-  out.trace = splat_trace({scene.surfels, weights}, view_of(scene.camera, scene.frame), scene.splatting,
-                          pass_of(scene.splatting.algorithm));
+  out.trace = splat_trace({scene.surfels, weights, scene.splatting.gamma}, view_of(scene.camera, scene.frame),
+                          scene.splatting, pass_of(scene.splatting));
 }
 
 void record_blocks(const Scene& scene, const Blocks& blocks, Recording& out) {
-  out.trace = block_trace(blocks.tree, blocks.frames, blocks.weights, view_of(scene.camera, scene.frame),
-                          scene.splatting, pass_of(scene.splatting.algorithm));
+  out.trace = block_trace(blocks.tree, blocks.frames, blocks.weights, blocks.gammas,
+                          view_of(scene.camera, scene.frame), scene.splatting, pass_of(scene.splatting));
   out.counts.blocks = blocks.frames.back().counts;
   out.counts.surfels = out.counts.blocks.surfels;
 }
@@ -104,7 +84,6 @@ Recording record(const Scene& scene, const CapturedWeights& captured) {
     }
     record_blocks(scene, blocks, out);
   }
-  if (scene.splatting.refine) refine(out.trace);
   return out;
 }
 
@@ -123,6 +102,7 @@ Recording record(const Scene& scene, const NumberFormats& formats,
     Splatting splatting = level_splatting(scene.splatting, level);
     const std::span<const Surfel> surfels = level == 0 ? scene.surfels : blocks.tree.levels[level].surfels;
     if (level != 0) splatting.gamma = std::min(splatting.gamma, suitable_gamma(surfels, splatting));
+    blocks.gammas[level] = splatting.gamma;
     CapturedWeights captured = weights_of(surfels, scene, splatting, formats, step);
     count(captured, scene, out.counts);
     if (level == 0) {
@@ -132,7 +112,6 @@ Recording record(const Scene& scene, const NumberFormats& formats,
     }
   }
   record_blocks(scene, blocks, out);
-  if (scene.splatting.refine) refine(out.trace);
   return out;
 }
 

@@ -27,7 +27,8 @@ float largest_radius(const kernels::View& view) {
 
 Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& from,
                      const Splatting& settings, float largest) {
-  const auto& [surfels, weights] = from;
+  const std::span surfels = from.surfels;
+  const std::span weights = from.weights;
   Buffer buffer;
   const std::size_t bytes = kernels::vertex_bytes(program.fields);
   buffer.bytes.resize(surfels.size() * kCorners * bytes);
@@ -126,7 +127,24 @@ void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& setting
     if (!shared) add(splats, buffer);
   }
   if (shared) splats.vertex_buffers = visibility.vertex_buffers;
-  place_buffers(settings, trace.buffers);
+}
+
+// The splats of the frame that refines one of `ranges`, of which only the buffers are needed.
+RecordedPass add_still_pass(const RecordedPass& splats, std::span<const SurfelBuffer> buffers,
+                            std::span<const DrawnRange> ranges, const Splatting& settings, float largest,
+                            Trace& trace) {
+  RecordedPass still = splats;
+  still.draw.pixel_program = static_cast<std::uint32_t>(trace.programs.size());
+  still.draw.state.source_factor = BlendFactor::one;
+  trace.programs.push_back(kernels::shader_text(kernels::kWeightedSplatPixelProgram));
+  for (std::uint32_t i = 0; i < buffers.size(); ++i) {
+    if (std::ranges::find(ranges, i, &DrawnRange::buffer) == ranges.end()) continue;
+    const std::span<const Surfel> surfels = buffers[i].surfels;
+    const std::vector<VertexWeights> weights(surfels.size(), equal_weights(buffers[i].still_weight));
+    still.vertex_buffers[i] = static_cast<std::uint32_t>(trace.buffers.size());
+    trace.buffers.push_back(vertex_buffer(still.program, {surfels, weights}, settings, largest));
+  }
+  return still;
 }
 
 }  // namespace
@@ -185,20 +203,27 @@ Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::ve
   state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
   state.destination_factor = BlendFactor::one;
 
-  add_buffers(buffers, settings, largest_radius(view), visibility, splats, trace);
+  const float largest = largest_radius(view);
+  add_buffers(buffers, settings, largest, visibility, splats, trace);
   const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
   trace.textures.push_back(kernels::alpha_texture(settings.cutoff, texture_length(settings), shape));
   trace.programs = {kernels::shader_text(visibility.program.file), kernels::shader_text(splats.program.file),
                     kernels::shader_text(pass.sum_weights ? kernels::kWeightedSplatPixelProgram
                                                           : kernels::kSplatPixelProgram)};
 
-  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-    if (frame > 0) trace.commands.emplace_back(Present{});
+  const auto add_frame = [&](const std::vector<DrawnRange>& ranges, RecordedPass& second, bool normalize) {
+    if (!trace.commands.empty()) trace.commands.emplace_back(Present{});
     trace.commands.emplace_back(Clear{});
-    for (RecordedPass* recorded : {&visibility, &splats})
-      for (const DrawnRange& range : frames[frame]) recorded->append(range, view, settings, trace);
-    if (pass.normalize_on_host) trace.commands.emplace_back(NormalizeOnHost{});
+    for (RecordedPass* recorded : {&visibility, &second})
+      for (const DrawnRange& range : ranges) recorded->append(range, view, settings, trace);
+    if (normalize) trace.commands.emplace_back(NormalizeOnHost{});
+  };
+  for (const std::vector<DrawnRange>& ranges : frames) add_frame(ranges, splats, pass.normalize_on_host);
+  if (pass.refine) {
+    RecordedPass still = add_still_pass(splats, buffers, frames.back(), settings, largest, trace);
+    add_frame(frames.back(), still, true);
   }
+  place_buffers(settings, trace.buffers);
   return trace;
 }
 

@@ -31,6 +31,7 @@ struct SplatPass {
   bool prefilter = true;     // EWA; false: the reconstruction filter alone
   bool sum_weights = false;  // true: the alpha channel sums the weights; false: it is left to the blend unit
   bool normalize_on_host = false;  // each frame, after its splats
+  bool refine = false;  // the last frame once more, with SurfelBuffer::still_weight, normalised on the host
 };
 
 // At most this many surfels in a draw: as many quads as 16-bit indices reach.
@@ -40,6 +41,7 @@ inline constexpr std::size_t kSurfelsADraw = 16384;
 struct SurfelBuffer {
   std::span<const Surfel> surfels;
   std::span<const VertexWeights> weights;  // of each
+  double still_weight = 0;                 // of all in the frame that refines; read only where there is one
 };
 
 // Some of a buffer's surfels, to be drawn in one call of each pass.
@@ -60,9 +62,10 @@ struct Tangents {
 Tangents tangents(const Surfel& surfel);
 
 // Buffers, programs and draws of the two passes of Ren 2002, section 5: for each of `frames` clear,
-// visibility and splats of its ranges, in their order. Four vertices a surfel, six 16-bit indices a surfel
-// shared by all draws. Buffers lie where `settings.vertex_memory` says: `automatic` puts them into video
-// memory in turn until `settings.video_megabytes` are full.
+// visibility and splats of its ranges, in their order. The frame that refines the last one has vertices of
+// its own, as the weights lie in the vertices: those of ewa-per-pixel. Four vertices a surfel, six 16-bit
+// indices a surfel shared by all draws. Buffers lie where `settings.vertex_memory` says: `automatic` puts
+// them into video memory in turn until `settings.video_megabytes` are full.
 Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::vector<DrawnRange>> frames,
                   const kernels::View& view, const Splatting& settings, const SplatPass& pass);
 

@@ -34,8 +34,8 @@ std::vector<std::size_t> levels_of(std::span<const ChosenFrame> frames) {
 }
 
 Trace block_trace(const LdcTree& tree, std::span<const ChosenFrame> frames,
-                  std::span<const std::vector<VertexWeights>> weights, const kernels::View& view,
-                  const Splatting& splatting, const SplatPass& pass) {
+                  std::span<const std::vector<VertexWeights>> weights, std::span<const double> still_weights,
+                  const kernels::View& view, const Splatting& splatting, const SplatPass& pass) {
   std::vector<SurfelBuffer> buffers;
   std::vector<std::uint32_t> first_buffers(tree.levels.size());
   for (const std::size_t level : levels_of(frames)) {
@@ -43,7 +43,8 @@ Trace block_trace(const LdcTree& tree, std::span<const ChosenFrame> frames,
     const std::span<const Surfel> surfels = tree.levels[level].surfels;
     for (std::size_t first = 0; first < surfels.size(); first += kBuffer) {
       const std::size_t count = std::min<std::size_t>(kBuffer, surfels.size() - first);
-      buffers.push_back({surfels.subspan(first, count), std::span(weights[level]).subspan(first, count)});
+      buffers.push_back({surfels.subspan(first, count), std::span(weights[level]).subspan(first, count),
+                         still_weights[level]});
     }
   }
   std::vector<std::vector<DrawnRange>> ranges;
