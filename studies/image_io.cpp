@@ -1,7 +1,5 @@
 #include "studies/image_io.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -67,23 +65,6 @@ void write_png(const Image& image, const fs::path& path) {
 
 std::vector<std::byte> encode_png(const Image& image) {
   return encode(".png", picture_of(image, 3));
-}
-
-Image read_image(const fs::path& path) {
-  constexpr std::size_t kMost = 16384;  // pixels a side
-  std::string why;
-  const auto decoded = pictures::codec().read_floats({path.string()}, 4, kMost, &why);
-  if (!decoded && why.empty())
-    throw UserError(path.string(), 0, "cannot be read, expected a picture (EXR or PNG)");
-  if (!decoded) throw UserError(path.string(), 0, fmt::format("is damaged ({}), expected a picture", why));
-  Image image(static_cast<int>(decoded->width), static_cast<int>(decoded->height));
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = {0, 0, 0, 1};
-    for (std::size_t c = 0; c < decoded->channels; ++c)
-      image.pixels[i][c] = decoded->values[i * decoded->channels + c];
-    if (decoded->channels < 3) image.pixels[i][1] = image.pixels[i][2] = image.pixels[i][0];
-  }
-  return image;
 }
 
 double psnr(const Image& a, const Image& b, const std::vector<unsigned char>& mask) {

@@ -52,9 +52,6 @@ void write_png(const Image& image, const std::filesystem::path& path);  // 8-bit
 // Bytes of a PNG file.
 std::vector<std::byte> encode_png(const Image& image);
 
-// Throws UserError where the file is missing or no picture. Any number of channels becomes RGBA.
-Image read_image(const std::filesystem::path& path);
-
 // Peak signal-to-noise ratio of r, g and b against peak 1, in dB, over the pixels where `mask` is not 0
 // (empty: all of them). Infinite where they are equal, NaN where the mask is empty of pixels. The sizes must
 // agree.

@@ -9,13 +9,14 @@
 #include <regex>
 
 #include "model/error.h"
+#include "studies/testing/read_image.h"
 
 namespace splatscope::studies {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ImageFile : public testing::Test {
+class ImageFile : public ::testing::Test {
  protected:
   ImageFile() { fs::create_directories(folder_); }
   ~ImageFile() override { fs::remove_all(folder_); }
@@ -33,7 +34,7 @@ Image ramp() {
 
 TEST_F(ImageFile, ExrKeepsEveryBit) {
   write_exr(ramp(), folder_ / "a.exr");
-  const Image read = read_image(folder_ / "a.exr");
+  const Image read = testing::read_image(folder_ / "a.exr");
   EXPECT_EQ(read.width, 5);
   EXPECT_EQ(read.height, 3);
   EXPECT_EQ(read.pixels, ramp().pixels);
@@ -41,7 +42,7 @@ TEST_F(ImageFile, ExrKeepsEveryBit) {
 
 TEST_F(ImageFile, DepthIsOneChannel) {
   write_exr(GrayImage{2, 1, {0.25f, 1}}, folder_ / "depth.exr");
-  const Image read = read_image(folder_ / "depth.exr");
+  const Image read = testing::read_image(folder_ / "depth.exr");
   EXPECT_EQ(read.at(0, 0), (std::array<float, 4>{0.25f, 0.25f, 0.25f, 1}));
   EXPECT_EQ(read.at(1, 0)[0], 1);
 }
@@ -53,7 +54,7 @@ TEST_F(ImageFile, PngRoundsToEightBits) {
     image.at(x, 0) = {value, 1 - value, x < 128 ? -1.0f : 2.0f, 0.1f};
   }
   write_png(image, folder_ / "a.png");
-  const Image read = read_image(folder_ / "a.png");
+  const Image read = testing::read_image(folder_ / "a.png");
   for (int x = 0; x < 256; ++x) {
     EXPECT_NEAR(read.at(x, 0)[0] * 255, x, 1e-4);
     EXPECT_NEAR(read.at(x, 0)[1] * 255, 255 - x, 1e-4);
@@ -80,7 +81,7 @@ TEST_F(ImageFile, HoldsNoDate) {
 }
 
 TEST_F(ImageFile, WhatIsNoPictureIsTheUsersError) {
-  EXPECT_THROW(read_image(folder_ / "none.exr"), UserError);
+  EXPECT_THROW(testing::read_image(folder_ / "none.exr"), UserError);
 }
 
 TEST(Psnr, KnownDistances) {

@@ -14,6 +14,7 @@
 #include "kernels/reference/ewa_reference.h"
 #include "model/machine/machine.h"
 #include "model/render.h"
+#include "studies/picture_quality.h"
 #include "studies/reference_comparison.h"
 #include "traces/gamma.h"
 #include "traces/recorder.h"
@@ -131,12 +132,12 @@ PrecisionScene precision_plane(double tilt_degrees, int surfels_a_side, int fram
 }
 
 PrecisionScene precision_model(int surfels, int frame_size) {
-  const std::filesystem::path fetched = "models/armadillo.off";
+  const std::filesystem::path fetched = std::filesystem::path(kModelsFolder) / "armadillo.off";
   const bool there = std::filesystem::exists(fetched);
   const traces::Scene scene = traces::parse_scene(
       fmt::format("[surfels]\n{}\ncount = {}\npattern = \"checker\"\n[frame]\nwidth = {}\nheight = {}\n",
-                  there ? "file = \"models/armadillo.off\"" : "generator = \"torus-knot\"", surfels,
-                  frame_size, frame_size),
+                  there ? fmt::format("file = \"{}\"", fetched.string()) : "generator = \"torus-knot\"",
+                  surfels, frame_size, frame_size),
       "precision.toml");
   return with_references(there ? "armadillo" : "torus knot", scene, false);
 }

@@ -235,7 +235,6 @@ SurfaceAgreement agreement(const Frame& frame, const kernels::ReferencePicture& 
     if (reference.coverage[pixel] != kernels::Coverage::certain) continue;
     Agreement& out = reference.sums[pixel].w < half ? both.fringe : both.surface;
     ++out.pixels;
-    out.with_ties += reference.lowest[pixel] != reference.highest[pixel];
     const Vec4 color = frame.color(pixel);
     double distance = 0;  // 1/255
     for (int c = 0; c < 3; ++c) {

@@ -94,10 +94,9 @@ Image picture_of(const kernels::SplatSums& reference);
 Image difference_picture(const Frame& frame, const kernels::SplatSums& reference);
 
 struct Agreement {
-  std::size_t pixels = 0;     // with splats that certainly count
-  std::size_t with_ties = 0;  // of these: at least one splat may count or not
-  std::size_t outside = 0;    // of these: further than 0.5/255 from the reference's bounds
-  double worst = 0;           // distance from the bounds, in 1/255
+  std::size_t pixels = 0;   // with splats that certainly count
+  std::size_t outside = 0;  // of these: further than 0.5/255 from the reference's bounds
+  double worst = 0;         // distance from the bounds, in 1/255
 };
 
 // How far the picture is from what the reference allows, given either way for splats whose edge passes within

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line.h"
-#include "studies/image_io.h"
+#include "studies/testing/read_image.h"
 #include "traces/trace_file.h"
 
 // What `run` prints and writes.
@@ -224,7 +224,7 @@ TEST(CommandLine, EveryFrameOfATraceIsWritten) {
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(frames[i]["picture"], names[i]);
       EXPECT_EQ(frames[i].contains("cycles"), fidelity == "cycle");
-      const auto picture = studies::read_image(folder.path() / "out" / names[i]);
+      const auto picture = studies::testing::read_image(folder.path() / "out" / names[i]);
       EXPECT_EQ(picture.at(3, 3), (std::array<float, 4>{i == 0 ? 1.0f : 0.0f, i == 0 ? 0.0f : 1.0f, 0, 1}));
     }
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/frame-002.png"));
@@ -265,7 +265,7 @@ TEST(CommandLine, ExtremeSurfelsLeaveAFiniteFrame) {
       EXPECT_EQ(skipped["zero_radius"], 1);
       EXPECT_EQ(skipped["zero_normal"], 1);
       for (const char* name : {"out/frame.exr", "out/depth.exr"})
-        for (const auto& pixel : studies::read_image(folder.path() / name).pixels)
+        for (const auto& pixel : studies::testing::read_image(folder.path() / name).pixels)
           for (float channel : pixel) ASSERT_TRUE(std::isfinite(channel)) << name << ' ' << algorithm;
     }
   }

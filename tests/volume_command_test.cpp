@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
-#include "studies/image_io.h"
+#include "studies/testing/read_image.h"
 
 namespace splatscope::tests {
 namespace {
@@ -26,7 +26,7 @@ TEST(VolumeCommand, DrawsAVolumeInEitherPrecision) {
     const std::size_t splats = results["splats"], empty = results["volume"]["empty"];
     EXPECT_GT(splats, 500u);
     EXPECT_EQ(splats + empty, 24u * 24 * 10);
-    pictures[precision == "double"] = studies::read_image(out / "frame.exr");
+    pictures[precision == "double"] = studies::testing::read_image(out / "frame.exr");
     EXPECT_TRUE(std::filesystem::exists(out / "frame.png"));
   }
   EXPECT_GT(studies::psnr(pictures[0], pictures[1]), 50);  // the step of the table: kernels/reference/volume

@@ -6,7 +6,7 @@
 // What the blend unit computes on an 8-bit frame buffer.
 namespace splatscope {
 
-// The factors of Direct3D 8, then the four of a constant colour that the hardware also has.
+// The factors of Direct3D 8, then four of a constant colour, which no trace names: the oracle's vectors do.
 enum class BlendFactor : std::uint8_t {
   zero,
   one,
@@ -25,7 +25,7 @@ enum class BlendFactor : std::uint8_t {
   inv_constant_alpha
 };
 
-// min and max ignore the factors.
+// min and max ignore the factors. Draws of a trace add: the others too are the oracle's vectors' alone.
 enum class BlendEquation : std::uint8_t { add, subtract, reverse_subtract, min, max };
 
 using Color8 = std::array<std::uint8_t, 4>;  // r g b a, 255 is 1

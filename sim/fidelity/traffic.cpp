@@ -93,7 +93,7 @@ void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
                 for (const QuadWork& quad : quads) {
                   if (!is_colored(job, quad)) continue;
                   ++count;
-                  traffic.color += touch(color, layout_.depth.line_of(quad), read_bytes, line_bytes, true);
+                  traffic.color += touch(color, layout_.color.line_of(quad), read_bytes, line_bytes, true);
                 }
               });
   for (double* of_all : {&traffic.color, &traffic.texture, &traffic.texel_blocks})

@@ -32,6 +32,7 @@ std::string quoted(std::string name) {
   return json(std::move(name)).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+constexpr Cycle kCounterInterval = 256;  // cycles between two values of a counter
 constexpr std::size_t kBufferBytes = 1 << 16;
 constexpr std::size_t kMostDigits = 20;        // of a number
 constexpr std::uint64_t kShareOfCommands = 4;  // at most a quarter of the room is kept for them
@@ -172,7 +173,7 @@ Cycle Timeline::sample(Cycle now) {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     count(channels_[i], machine_->channels[i]->items(), now);
   }
-  return now + window_.counter_interval;
+  return now + kCounterInterval;
 }
 
 void Timeline::end(const Result& result) {

@@ -19,7 +19,6 @@ class Timeline final : public Observer {
  public:
   struct Window {
     Cycle first = 0, last = kNever;  // core cycles shown
-    Cycle counter_interval = 256;    // cycles between two values of a counter
     std::uint64_t most_bytes = 48'000'000;
   };
   // `trace` is what will be simulated. `out` and `trace` outlive the timeline.
