@@ -28,12 +28,6 @@ traces::Scene plane(double cutoff, bool circle) {
       "plane.toml");
 }
 
-Machine with_float_frame(Machine machine) {
-  machine.numbers.frame = FrameFormat::float32;
-  machine.numbers.color = ColorFormat::float32;
-  return machine;
-}
-
 std::vector<int> lengths_for(double cutoff) {
   std::vector<int> lengths;
   for (const double part : kParts)
@@ -160,7 +154,7 @@ int least_length(double cutoff) {
 
 std::vector<TextureRow> texture_rows(const traces::Scene& scene, std::span<const int> lengths,
                                      const Machine& machine) {
-  const Machine exact = with_float_frame(machine);
+  const Machine exact = with_frame(machine, FrameFormat::float32);
   const kernels::ReferencePicture reference = scene_reference(scene);
   std::vector<TextureRow> rows;
   traces::Scene changed = scene;
