@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -144,18 +145,22 @@ SurfaceModel head_model(int points, int size) {
 
 SurfaceModel terrain_model(int points, int size) {
   SurfaceModel model{"Matterhorn", "a height field of noise", {}, {}, 0, {}};
-  const int edge = static_cast<int>(std::sqrt(points));
-  model.spacing = 2.0 / edge;
-  model.surfels.resize(static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge));
-  std::size_t k = 0;
-  for (int row = 0; row < edge; ++row) {
-    for (int column = 0; column < edge; ++column) {
-      Surfel& surfel = model.surfels[k++];
-      const double x = model.spacing * (column + 0.5) - 1, z = model.spacing * (row + 0.5) - 1;
-      const double height = height_at(x, z), step = model.spacing;
+  const auto rows = static_cast<std::int64_t>(std::sqrt(points));
+  const double step_z = 2.0 / static_cast<double>(rows);
+  model.spacing = step_z;
+  model.surfels.reserve(static_cast<std::size_t>(points));
+  for (std::int64_t row = 0; row < rows; ++row) {
+    // Where `points` is no square, some rows have more of them than others.
+    const std::int64_t columns = points * (row + 1) / rows - points * row / rows;
+    const double step_x = 2.0 / static_cast<double>(columns);
+    const double z = step_z * (static_cast<double>(row) + 0.5) - 1;
+    for (std::int64_t column = 0; column < columns; ++column) {
+      Surfel& surfel = model.surfels.emplace_back();
+      const double x = step_x * (static_cast<double>(column) + 0.5) - 1;
+      const double height = height_at(x, z);
       surfel.position = {x, height, z};
-      surfel.tangent_s = kReach * dvec3(0, height_at(x, z + step) - height, step);
-      surfel.tangent_t = kReach * dvec3(step, height_at(x + step, z) - height, 0);
+      surfel.tangent_s = kReach * dvec3(0, height_at(x, z + step_z) - height, step_z);
+      surfel.tangent_t = kReach * dvec3(step_x, height_at(x + step_x, z) - height, 0);
       const dvec3 normal = glm::normalize(glm::cross(surfel.tangent_s, surfel.tangent_t));
       surfel.color = lit(normal) * ground_color(surfel.position, normal);
     }

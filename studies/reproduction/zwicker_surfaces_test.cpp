@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace splatscope::studies {
 namespace {
 
@@ -22,6 +25,12 @@ TEST(ZwickerSurfaces, pictures_of_the_stand_ins) {
 
   const SurfaceModel terrain = terrain_model(40000, 96);
   EXPECT_GT(mean_opacity(draw_layered(terrain, 4), 38, 50, 20), 0.99);
+  for (const int points : {40000, 40001, 40399}) {  // 200 x 200 and more
+    const SurfaceModel model = terrain_model(points, 96);
+    EXPECT_EQ(model.surfels.size(), static_cast<std::size_t>(points));
+    for (const kernels::Surfel& surfel : model.surfels)
+      ASSERT_LT(std::max(std::abs(surfel.position.x), std::abs(surfel.position.z)), 1);
+  }
 
   const SurfaceModel helicopter = helicopter_model(60000, 96);
   EXPECT_EQ(helicopter.surfels.size(), 60000u);
@@ -36,6 +45,7 @@ TEST(ZwickerSurfaces, table_has_the_papers_models_at_both_sizes) {
   const std::vector<SurfaceRow> rows = surface_rows(0.01, 1);
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows[0].points, 4291u);
+  EXPECT_EQ(rows[2].points, 47820u);
   EXPECT_EQ(rows[5].points, 9876u);
   for (const SurfaceRow& row : rows) {
     EXPECT_GT(row.layered_seconds, 0);
