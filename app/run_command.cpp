@@ -37,6 +37,19 @@ struct Options {
   bool heat_maps = false;
 };
 
+// Of the capture, where there was one.
+void print_weights(const traces::RecordCounts& counts) {
+  if (counts.weights_captured + counts.weights_by_default + counts.weights_outside_box == 0) return;
+  std::cout << fmt::format(
+      "  weights: {} captured, {} of them a vertex; {} seen from no view, {} outside "
+      "of the box\n",
+      counts.weights_captured, counts.weights_at_edges, counts.weights_by_default,
+      counts.weights_outside_box);
+  if (counts.weights_captured == 0 && counts.weights_by_default > 0)
+    std::cout << "  warning: no view of the capture shows a surfel, so no weight is captured and the picture "
+                 "may be black: the splats may be too faint for the frame buffer\n";
+}
+
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
   std::cout << fmt::format("{} on {}\n", input.name, machine.title);
   if (input.recorded)
@@ -44,12 +57,7 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
                              traces::describe(input.skipped, input.estimated));
   if (input.recorded && !input.recorded->blocks.surfels_by_level.empty())
     std::cout << fmt::format("  {}\n", traces::describe(input.recorded->blocks));
-  if (input.recorded && input.recorded->weights_captured > 0)
-    std::cout << fmt::format(
-        "  weights: {} captured, {} of them a vertex; {} seen from no view, {} outside "
-        "of the box\n",
-        input.recorded->weights_captured, input.recorded->weights_at_edges,
-        input.recorded->weights_by_default, input.recorded->weights_outside_box);
+  if (input.recorded) print_weights(*input.recorded);
   if (input.volume) std::cout << fmt::format("  {}\n", traces::describe(*input.volume));
   if (input.mesh.triangles > 0) std::cout << fmt::format("  {}\n", traces::describe(input.mesh));
   const RenderCounters& c = run.rendered.counters;

@@ -271,5 +271,21 @@ TEST(CommandLine, ExtremeSurfelsLeaveAFiniteFrame) {
   }
 }
 
+// A splat of sigma 10 is under one step of 8 bits at its centre: 1/(200 pi).
+TEST(CommandLine, ACaptureThatSeesNothingIsWarnedOf) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  folder.file("faint.toml", kSmallScene + std::string("[splatting]\nsigma = 10\n"));
+  const auto said = [&](const char* scene) {
+    return run_program({"run", scene, "--fidelity", "functional", "--out", "out"}, folder.path()).out;
+  };
+  const std::string faint = said("faint.toml"), small = said("small.toml");
+  EXPECT_NE(faint.find("weights: 0 captured, 0 of them a vertex; 256 seen from no view"), std::string::npos)
+      << faint;
+  EXPECT_NE(faint.find("warning: no view of the capture shows a surfel"), std::string::npos) << faint;
+  EXPECT_NE(small.find("weights: 256 captured"), std::string::npos) << small;
+  EXPECT_EQ(small.find("warning"), std::string::npos) << small;
+}
+
 }  // namespace
 }  // namespace splatscope::tests
