@@ -67,6 +67,7 @@ void refuse_empty_values(CLI::App& command) {
 int run(int argc, const char* const* argv) {
   CLI::App app("splatscope: a cycle-level simulator of a programmable GPU of 2002, and EWA splatting on it");
   app.require_subcommand(1);
+  app.footer("Example: splatscope run checkerboard-ewa-per-surfel --out out");
   app.fallthrough();  // --quiet may stand after the command
   Invocation invocation;
   app.add_flag("--quiet", invocation.quiet, "no progress bar");

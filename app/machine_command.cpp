@@ -44,6 +44,7 @@ void list_units(const Machine& machine) {
 void add_machine_command(CLI::App& app) {
   CLI::App* machine = app.add_subcommand("machine", "the machines that can be simulated");
   machine->require_subcommand(1);
+  machine->footer("Example: splatscope machine list");
   CLI::App* list = machine->add_subcommand("list", "their names");
   list->footer("Example: splatscope machine list");
   list->callback([] {

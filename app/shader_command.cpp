@@ -97,6 +97,7 @@ void add_shader_command(CLI::App& app) {
   const auto options = std::make_shared<ShaderOptions>();
   CLI::App* shader = app.add_subcommand("shader", "vertex and pixel programs: vs_1_1, ps_1_1 to ps_1_4");
   shader->require_subcommand(1);
+  shader->footer("Example: splatscope shader check kernels/object_space_ewa/splat_ewa.vs");
 
   CLI::App* check = add_part(shader, options, "check", "validate, and say what the program costs and wastes",
                              "Example: splatscope shader check kernels/object_space_ewa/splat_ewa.vs");

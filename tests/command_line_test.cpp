@@ -6,7 +6,12 @@ namespace splatscope::tests {
 namespace {
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
-  const std::vector<std::vector<std::string>> commands = {{"record"},
+  const std::vector<std::vector<std::string>> commands = {{},
+                                                          {"machine"},
+                                                          {"scene"},
+                                                          {"shader"},
+                                                          {"trace"},
+                                                          {"record"},
                                                           {"trace", "info"},
                                                           {"scene", "keys"},
                                                           {"machine", "list"},
@@ -23,10 +28,11 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
                                                           {"volume"},
                                                           {"study"}};
   for (std::vector<std::string> command : commands) {
+    const std::string name = command.empty() ? "run" : command[0];
     command.push_back("--help");
     const Outcome outcome = run_program(command);
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.out.find("Example: splatscope " + command[0]), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("Example: splatscope " + name), std::string::npos) << outcome.out;
   }
 }
 
