@@ -13,12 +13,13 @@
 namespace splatscope::sim {
 namespace {
 
-constexpr std::size_t kSamples = 48;  // of a population
-constexpr std::size_t kFewest = 4;    // units to a sample, or all are simulated
-constexpr std::size_t kUnit = 2;      // stretches
-constexpr std::size_t kWarming = 2;   // stretches before a sample
-constexpr std::size_t kHead = 2;      // stretches at the start of a draw that are simulated
-constexpr std::size_t kTail = 2;      // at least, at its end
+// Of a population. A prime: where equal frames divide it, all are sampled in the same places.
+constexpr std::size_t kSamples = 47;
+constexpr std::size_t kFewest = 4;   // units to a sample, or all are simulated
+constexpr std::size_t kUnit = 2;     // stretches
+constexpr std::size_t kWarming = 2;  // stretches before a sample
+constexpr std::size_t kHead = 2;     // stretches at the start of a draw that are simulated
+constexpr std::size_t kTail = 2;     // at least, at its end
 constexpr double kCutBias = 0.004;
 
 // Units of draws that have their state in common.
