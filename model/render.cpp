@@ -178,6 +178,21 @@ class Renderer {
   std::uint32_t sampled_runs_apart_ = 1;
 };
 
+// A renderer that records nothing, with what it draws on.
+struct Unrecorded {
+  Unrecorded(const Trace& trace, const RenderOptions& like)
+      : options{.formats = like.formats,
+                .vertex_cache_entries = like.vertex_cache_entries,
+                .record = Record::nothing},
+        rendered{Frame(trace.width, trace.height, options.formats), {}, {}},
+        renderer(
+            trace, options, rendered, [](const DrawWork&) {}, [](std::size_t) {}) {}
+
+  RenderOptions options;
+  Rendered rendered;
+  Renderer renderer;
+};
+
 }  // namespace
 
 RenderOptions render_options(const Machine& machine, Record record) {
@@ -204,33 +219,24 @@ Rendered render(const Trace& trace, const RenderOptions& options, const std::fun
 }
 
 Frame render_view(const Trace& trace, std::span<const Command> commands, RenderOptions options) {
-  options.record = Record::nothing;
-  Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
-  Renderer renderer(
-      trace, options, rendered, [](const DrawWork&) {}, [](std::size_t) {});
-  renderer.run_frame(commands, 0);
-  return std::move(rendered.frame);
+  Unrecorded drawing(trace, options);
+  drawing.renderer.run_frame(commands, 0);
+  return std::move(drawing.rendered.frame);
 }
 
 class Replay::State {
  public:
-  State(const Trace& trace, const NumberFormats& formats)
-      : options_{.formats = formats, .record = Record::nothing},
-        rendered_{Frame(trace.width, trace.height, formats), {}, {}},
-        renderer_(
-            trace, options_, rendered_, [](const DrawWork&) {}, [](std::size_t) {}) {}
+  State(const Trace& trace, const NumberFormats& formats) : drawing_(trace, {.formats = formats}) {}
 
   void run(std::vector<Command> commands) {
     done_.push_back(std::move(commands));
-    renderer_.run_frame(done_.back(), 0);
+    drawing_.renderer.run_frame(done_.back(), 0);
   }
-  const Frame& target(std::uint32_t number) { return renderer_.target(number); }
+  const Frame& target(std::uint32_t number) { return drawing_.renderer.target(number); }
 
  private:
-  RenderOptions options_;
-  Rendered rendered_;
   std::deque<std::vector<Command>> done_;  // where the renderer has seen them
-  Renderer renderer_;
+  Unrecorded drawing_;
 };
 
 Replay::Replay(const Trace& trace, const NumberFormats& formats)

@@ -63,10 +63,9 @@ Json json_of(const WhatIfRow& row) {
 void add_table(Findings& findings, std::span<const ProgramRow> rows) {
   using enum Report::Align;
   std::vector<std::vector<std::string>> cells;
-  const auto rate = [](const Rate& r) { return fmt::format("{:.2f} ({})", r.fps, r.bottleneck); };
   for (const ProgramRow& row : rows) {
     cells.push_back({std::string(row.name), fmt::format("{}", row.slots), row.live ? "all" : "no",
-                     rate(row.rates[0]), rate(row.rates[1]),
+                     text_of_rate(row.rates[0]), text_of_rate(row.rates[1]),
                      fmt::format("{:.2f}", row.rates[0].fps / rows[0].rates[0].fps),
                      fmt::format("{:.1e}, {:.1e}", row.ieee.deviation, row.nv20.deviation),
                      fmt::format("{:.1f}, {:.1f}", row.psnr_paper, row.psnr_paper_one_weight),

@@ -108,6 +108,14 @@ Rate rate_of(const sim::Result& timing) {
   return {timing.frames_per_second(), busiest.name, timing.share(busiest.busy)};
 }
 
+std::string text_of_rate(const Rate& rate) {
+  return fmt::format("{:.2f} ({})", rate.fps, rate.bottleneck);
+}
+
+std::string text_of_bottleneck(const Rate& rate) {
+  return fmt::format("{} ({:.0f} % busy)", rate.bottleneck, 100 * rate.share);
+}
+
 namespace {
 
 // The throughput of each draw after its function, while its work is at hand.

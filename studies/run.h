@@ -102,6 +102,9 @@ struct Rate {
   double share = 0;  // of the frame, 0 to 1
 };
 Rate rate_of(const sim::Result& timing);
+// For tables: "24.99 (vertex0)", frames a second and the unit; "vertex0 (99 % busy)".
+std::string text_of_rate(const Rate& rate);
+std::string text_of_bottleneck(const Rate& rate);
 
 // Where every event is simulated (cycle, referee), the function of the next draws runs in a thread beside the
 // time of this one, and calls `on_frame`. The records of work are dropped once they are simulated.

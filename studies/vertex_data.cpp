@@ -60,12 +60,11 @@ nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows) {
 void add_table(Findings& findings, const Plane& plane, const std::vector<VertexDataRow>& rows) {
   using enum Report::Align;
   std::vector<std::vector<std::string>> cells;
-  const auto rate = [](const Rate& r) { return fmt::format("{:.2f} ({})", r.fps, r.bottleneck); };
   for (const VertexDataRow& row : rows) {
     cells.push_back({std::string(row.programs.visibility), std::string(row.programs.ewa), row.machine,
                      fmt::format("{} + {}", row.visibility_slots, row.ewa_slots),
                      fmt::format("{} + {}", row.visibility_bytes, row.ewa_bytes),
-                     fmt::format("{}", row.surfel_bytes()), rate(row.video), rate(row.agp),
+                     fmt::format("{}", row.surfel_bytes()), text_of_rate(row.video), text_of_rate(row.agp),
                      fmt::format("{:.1f}", row.psnr)});
   }
   findings.table(

@@ -94,7 +94,6 @@ class CapturedViews {
     const Sphere sphere = bounding_sphere(surfels, splatting);
     RenderOptions options;
     options.formats = formats;
-    options.record = Record::nothing;
     for (int i = 0; i < capture.views; ++i) {
       const CaptureView view = looking_from(sphere, direction(i, capture.views), capture.frame_size);
       if (may_be_asked(view, surfels, splatting)) views_.push_back(view);

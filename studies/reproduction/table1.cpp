@@ -68,8 +68,7 @@ void add_to(Findings& findings, const std::vector<Table1Row>& table) {
     rows.push_back({row.algorithm, row.machine, fmt::format("{}", row.visibility_slots),
                     fmt::format("{}", row.splat_slots), fmt::format("{:.1f}", row.published_fps),
                     fmt::format("{:.2f}", row.simulated.fps), fmt::format("{:+.1f} %", 100 * row.error()),
-                    fmt::format("{} ({:.0f} % busy)", row.simulated.bottleneck, 100 * row.simulated.share),
-                    fmt::format("{:.1f}", row.psnr),
+                    text_of_bottleneck(row.simulated), fmt::format("{:.1f}", row.psnr),
                     row.fitted() ? "fitted: " + row.fitted_by : "predicted"});
   }
   findings.table(

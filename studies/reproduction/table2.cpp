@@ -51,7 +51,7 @@ void add_to(Findings& findings, const std::vector<Table2Row>& table) {
     rows.push_back({row.model, fmt::format("{}", row.points), fmt::format("{}", row.drawn),
                     fmt::format("{}", row.resolution), row.machine, fmt::format("{:.1f}", row.published_fps),
                     fmt::format("{:.2f}", row.simulated.fps), fmt::format("{:+.1f} %", 100 * row.error()),
-                    fmt::format("{} ({:.0f} % busy)", row.simulated.bottleneck, 100 * row.simulated.share)});
+                    text_of_bottleneck(row.simulated)});
   }
   findings.table(
       "EWA normalised per surfel, culled by blocks at the finest level. No parameter is fitted to these.",

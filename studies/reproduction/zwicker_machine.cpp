@@ -110,8 +110,7 @@ void add_table(Report& report, const std::vector<VolumeRow>& rows) {
     for (const VolumeFrame& frame : row.frames) {
       cells.push_back({row.name, row.stand_in, fmt::format("{}", row.splats), fmt::format("{}", row.sheets),
                        fmt::format("{:.1f}", row.psnr_8_bits), fmt::format("{:.1f}", row.psnr_float),
-                       frame.machine, fmt::format("{:.2f}", frame.rate.fps),
-                       fmt::format("{} ({:.0f} % busy)", frame.rate.bottleneck, 100 * frame.rate.share)});
+                       frame.machine, fmt::format("{:.2f}", frame.rate.fps), text_of_bottleneck(frame.rate)});
     }
   }
   report.table(
