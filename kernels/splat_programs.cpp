@@ -105,18 +105,14 @@ constexpr SplatProgram kVisibility[] = {
     {"quad", kVisibilityProgram, "makes its corner from o, s and t", kPaperVertex, splat_constants},
     {"corner", kCornerVisibilityProgram, "finds its corner in the vertex", kCornerVertex, splat_constants}};
 
-// The corners of a Cholesky factor follow the axes of the screen. There t points to the right and s down
-// where a camera that stands upright sees a surfel of the recorder's, unless it faces along x.
-constexpr std::size_t kScreenTurn = 1;
-
 constexpr SplatProgram kEwa[] = {
     {"paper", kEwaProgram, "the paper's: eigenvalues of M by Appendix A", kPaperVertex, splat_constants},
     {"normal", kNormalProgram, "the same factor as plane, from the least bytes", kNormalVertex,
-     plane_constants, kScreenTurn},
+     plane_constants, true},
     {"plane", kPlaneProgram, "Cholesky factor on the screen, the surfel's plane by its normal", kPlaneVertex,
-     plane_constants, kScreenTurn},
+     plane_constants, true},
     {"facing", kFacingProgram, "the same for surfels that face the eye; the others vanish", kPlaneVertex,
-     plane_constants, kScreenTurn}};
+     plane_constants, true}};
 
 constexpr SplatProgram kPlain = {"plain", kPlainProgram, "the reconstruction filter alone", kPaperVertex,
                                  splat_constants};

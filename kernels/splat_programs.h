@@ -42,9 +42,9 @@ struct SplatProgram {
   std::span<const VertexField> fields;
   // c0, c1, ... `cutoff` is c of Eq. 14, > 0; `depth_offset` is z_t of section 5.1 in camera-space units.
   std::vector<Vec4> (*constants)(const View&, double cutoff, double depth_offset);
-  // Corner i of what it draws lies about where corner (i + weight_turn) % 4 of o +- s +- t does, whose weight
-  // belongs there.
-  std::size_t weight_turn = 0;
+  // Its corners lie as the axes of the screen do, x to the right and y up, and not as s and t: corner i is to
+  // have the weight of the corner of o +- s +- t that lies there.
+  bool screen_corners = false;
 };
 
 std::span<const SplatProgram> visibility_programs();  // first pass

@@ -230,6 +230,63 @@ TEST(Recorder, CapturedWeightsAreTheInverseSums) {
   EXPECT_GT(captured.weights[0][0], 1.5f);  // a corner has a quarter of the neighbours
 }
 
+double psnr(const splatscope::Frame& a, const splatscope::Frame& b) {
+  double squares = 0;
+  const std::size_t pixels = std::size_t{a.width} * a.height;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    for (std::size_t i = 0; i < 3; ++i) squares += std::pow(a.color(pixel)[i] - b.color(pixel)[i], 2.0);
+  }
+  return -10 * std::log10(squares / (3.0 * static_cast<double>(pixels)));
+}
+
+// At the edges of a plane the corners of a quad have weights of their own. A short program's quads lie
+// otherwise than the paper's, but whichever way the plane faces each corner has about the weight that belongs
+// where it is drawn.
+TEST(Recorder, CornersKeepTheirWeightsInEveryProgram) {
+  const Scene plane = parse_scene(
+      "[surfels]\ncolumns = 12\nrows = 12\nchecker_light = [1, 1, 1]\nchecker_dark = [1, 1, 1]\n"
+      "[frame]\nwidth = 64\nheight = 64\n[splatting]\nalgorithm = \"ewa-per-surfel\"\n"
+      "[capture]\nviews = 8\nframe_size = 128\n",
+      "plane.toml");
+  for (int turn = 0; turn < 3; ++turn) {
+    for (const float side : {1.0f, -1.0f}) {
+      const auto turned = [&](glm::vec3 p) {
+        for (int i = 0; i < turn; ++i) p = {p.z, p.x, p.y};
+        return p;
+      };
+      Scene scene = plane;
+      for (Surfel& surfel : scene.surfels) {
+        surfel.position = turned(surfel.position);
+        surfel.normal = turned(surfel.normal);
+      }
+      scene.camera.eye = turned({2, side * 12, -6});
+      scene.camera.target = turned({0, 0, 0});
+      scene.camera.up = turned({0, 0, 1});
+      const splatscope::Frame paper = frames_of(record(scene, NumberFormats{}).trace).back();
+      for (const std::string_view program : {"normal", "plane", "facing"}) {
+        if (program == "facing" && side < 0) continue;  // draws nothing from behind
+        scene.splatting.ewa_program = program;
+        const splatscope::Frame frame = frames_of(record(scene, NumberFormats{}).trace).back();
+        EXPECT_GT(psnr(frame, paper), 35) << program << ", turn " << turn << ", side " << side;
+      }
+    }
+  }
+}
+
+// Culling goes by how a quad winds: the front of a model is what every program leaves.
+TEST(Recorder, DrawsAModelByEveryProgram) {
+  Scene scene = parse_scene(
+      "[surfels]\ngenerator = \"sphere\"\ncount = 2000\n[frame]\nwidth = 64\nheight = 64\n"
+      "[splatting]\nalgorithm = \"ewa-per-surfel\"\n[capture]\nviews = 8\nframe_size = 128\n",
+      "sphere.toml");
+  ASSERT_EQ(Faces::front, scene.splatting.faces);
+  const splatscope::Frame paper = frames_of(record(scene, NumberFormats{}).trace).back();
+  for (const std::string_view program : {"normal", "plane", "facing"}) {
+    scene.splatting.ewa_program = program;
+    EXPECT_GT(psnr(frames_of(record(scene, NumberFormats{}).trace).back(), paper), 40) << program;
+  }
+}
+
 TEST(Recorder, HostileSurfelsLeaveNoNaN) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
   Scene scene = small_plane(Algorithm::ewa_per_pixel);

@@ -25,24 +25,48 @@ float largest_radius(const kernels::View& view) {
   return static_cast<float>(kLargestRadius * view.near_plane / (view.eta * scale));
 }
 
+// Which corner of the program's quad lies about where each corner of o +- s +- t does, and so is to have its
+// weight. The quad winds as o +- s +- t does in this view: culling by the winding goes by the surfel's
+// normal.
+std::array<std::size_t, kCorners> corner_places(const kernels::SplatProgram& program,
+                                                const kernels::View& view, const kernels::Surfel& surfel) {
+  if (!program.screen_corners) return {0, 1, 2, 3};
+  const glm::dvec3 o = view.camera_space(surfel.position);
+  const auto on_screen = [&](const glm::dvec3& axis) {  // times z^2
+    const glm::dvec3 d = view.camera_direction(axis);
+    return glm::dvec2(d) * o.z - glm::dvec2(o) * d.z;
+  };
+  // But for the low-pass filter the lower factor L of [s t] [s t]^T is [s t] Q with Q orthogonal. L's first
+  // row is (l11, 0), so Q's first column lies along the first row of [s t]. Corner (-1, -1) is drawn as Q^-1
+  // (-1, -1).
+  const glm::dvec2 s = on_screen(surfel.tangent_s), t = on_screen(surfel.tangent_t);
+  const bool mirrored = s.x * t.y < t.x * s.y;
+  const bool right = s.x + t.x < 0, up = mirrored ? s.x > t.x : s.x < t.x;
+  const std::size_t first = up ? (right ? 2 : 3) : (right ? 1 : 0);
+  const std::size_t step = mirrored ? kCorners - 1 : 1;
+  return {first, (first + step) % kCorners, (first + 2) % kCorners, (first + 3 * step) % kCorners};
+}
+
 Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& from,
-                     const Splatting& settings, float largest) {
+                     const kernels::View& view, const Splatting& settings) {
   const std::span surfels = from.surfels;
   const std::span weights = from.weights;
   Buffer buffer;
   const std::size_t bytes = kernels::vertex_bytes(program.fields);
   buffer.bytes.resize(surfels.size() * kCorners * bytes);
   std::byte* out = buffer.bytes.data();
+  const float largest = largest_radius(view);
   for (std::size_t k = 0; k < surfels.size(); ++k) {
     Surfel drawn = surfels[k];
     drawn.radius = std::min(drawn.radius, largest);
     const Tangents axes = tangents(drawn);
     kernels::Surfel surfel{glm::dvec3(surfels[k].position), axes.s, axes.t, settings.sigma, 0,
                            glm::dvec3(surfels[k].color)};
+    const std::array<std::size_t, kCorners> places = corner_places(program, view, surfel);
     for (std::size_t i = 0; i < kCorners; ++i) {
-      surfel.weight = weights[k][(i + program.weight_turn) % kCorners];
+      surfel.weight = weights[k][i];
       kernels::write_vertex(program.fields,
-                            {surfel, kernels::kQuadCorners[i], std::sqrt(2 * settings.cutoff)}, out);
+                            {surfel, kernels::kQuadCorners[places[i]], std::sqrt(2 * settings.cutoff)}, out);
       out += bytes;
     }
   }
@@ -112,7 +136,7 @@ RecordedPass make_pass(const kernels::SplatProgram& program, std::uint32_t verte
 }
 
 // Fills the trace's buffers. Passes with the same vertices share them.
-void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& settings, float largest,
+void add_buffers(std::span<const SurfelBuffer> buffers, const kernels::View& view, const Splatting& settings,
                  RecordedPass& visibility, RecordedPass& splats, Trace& trace) {
   std::size_t most = 0;
   for (const SurfelBuffer& buffer : buffers) most = std::max(most, buffer.surfels.size());
@@ -120,7 +144,7 @@ void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& setting
   const bool shared = std::ranges::equal(splats.program.fields, visibility.program.fields);
   const auto add = [&](RecordedPass& pass, const SurfelBuffer& buffer) {
     pass.vertex_buffers.push_back(static_cast<std::uint32_t>(trace.buffers.size()));
-    trace.buffers.push_back(vertex_buffer(pass.program, buffer, settings, largest));
+    trace.buffers.push_back(vertex_buffer(pass.program, buffer, view, settings));
   };
   for (const SurfelBuffer& buffer : buffers) {
     add(visibility, buffer);
@@ -131,8 +155,8 @@ void add_buffers(std::span<const SurfelBuffer> buffers, const Splatting& setting
 
 // The splats of the frame that refines one of `ranges`, of which only the buffers are needed.
 RecordedPass add_still_pass(const RecordedPass& splats, std::span<const SurfelBuffer> buffers,
-                            std::span<const DrawnRange> ranges, const Splatting& settings, float largest,
-                            Trace& trace) {
+                            std::span<const DrawnRange> ranges, const kernels::View& view,
+                            const Splatting& settings, Trace& trace) {
   RecordedPass still = splats;
   still.draw.pixel_program = static_cast<std::uint32_t>(trace.programs.size());
   still.draw.state.source_factor = BlendFactor::one;
@@ -142,7 +166,7 @@ RecordedPass add_still_pass(const RecordedPass& splats, std::span<const SurfelBu
     const std::span<const Surfel> surfels = buffers[i].surfels;
     const std::vector<VertexWeights> weights(surfels.size(), equal_weights(buffers[i].still_weight));
     still.vertex_buffers[i] = static_cast<std::uint32_t>(trace.buffers.size());
-    trace.buffers.push_back(vertex_buffer(still.program, {surfels, weights}, settings, largest));
+    trace.buffers.push_back(vertex_buffer(still.program, {surfels, weights}, view, settings));
   }
   return still;
 }
@@ -203,8 +227,7 @@ Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::ve
   state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
   state.destination_factor = BlendFactor::one;
 
-  const float largest = largest_radius(view);
-  add_buffers(buffers, settings, largest, visibility, splats, trace);
+  add_buffers(buffers, view, settings, visibility, splats, trace);
   const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
   trace.textures.push_back(kernels::alpha_texture(settings.cutoff, texture_length(settings), shape));
   trace.programs = {kernels::shader_text(visibility.program.file), kernels::shader_text(splats.program.file),
@@ -220,7 +243,7 @@ Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::ve
   };
   for (const std::vector<DrawnRange>& ranges : frames) add_frame(ranges, splats, pass.normalize_on_host);
   if (pass.refine) {
-    RecordedPass still = add_still_pass(splats, buffers, frames.back(), settings, largest, trace);
+    RecordedPass still = add_still_pass(splats, buffers, frames.back(), view, settings, trace);
     add_frame(frames.back(), still, true);
   }
   place_buffers(settings, trace.buffers);
