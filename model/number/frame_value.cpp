@@ -13,12 +13,13 @@ constexpr std::array<std::array<int, 4>, 4> kBayer{
 
 constexpr float kLargestHalf = 65504;
 
-// Of a step: a whole number of 65535ths that went through binary32 is not rounded down to the one before.
-constexpr double kSlack = 1.0 / 128;
+// Of the range: a whole number of steps is not rounded down to the one before by what the few binary32
+// operations that made it are off, half a unit in the last place each.
+constexpr double kSlack = 0x1p-23;
 
 float unorm(double value, double steps, double offset) {
   if (!(value > 0)) return 0;
-  return static_cast<float>(std::min(std::floor(value * steps + offset + kSlack), steps) / steps);
+  return static_cast<float>(std::min(std::floor((value + kSlack) * steps + offset), steps) / steps);
 }
 
 }  // namespace

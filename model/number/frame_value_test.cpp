@@ -21,6 +21,23 @@ TEST(FrameValue, UnormClampsAndRounds) {
   EXPECT_EQ(stored_value(FrameFormat::unorm16, kNaN, 0.5), 0);
 }
 
+// A product of two stored colours is rounded as its exact value is.
+TEST(FrameValue, UnormRoundsProductsExactly) {
+  for (int sum = 0; sum <= 255 * 255; ++sum) {
+    const auto value = static_cast<float>(sum / (255.0 * 255));
+    ASSERT_EQ(stored_value(FrameFormat::unorm8, value, 0), static_cast<float>(sum / 255 / 255.0)) << sum;
+    ASSERT_EQ(stored_value(FrameFormat::unorm8, value, 0.5),
+              static_cast<float>((2 * sum + 255) / 510 / 255.0))
+        << sum;
+  }
+  for (int sum = 0; sum <= 1023 * 1023; ++sum) {
+    const auto value = static_cast<float>(sum / (1023.0 * 1023));
+    ASSERT_EQ(stored_value(FrameFormat::unorm10, value, 0.5),
+              static_cast<float>((2 * sum + 1023) / 2046 / 1023.0))
+        << sum;
+  }
+}
+
 // What is stored stays: a splat of nothing changes no pixel, whatever the rounding.
 TEST(FrameValue, StoredValuesAreFixedPoints) {
   for (const FrameFormat format : {FrameFormat::unorm8, FrameFormat::unorm10, FrameFormat::unorm16}) {
