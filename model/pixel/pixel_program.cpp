@@ -109,7 +109,7 @@ struct PixelProgram::Decoded {
   std::array<std::optional<Vec4>, isa::kPixelConstants> defined;
   unsigned constants = 0, inputs = 0, textures = 0;  // used: bit n
   unsigned textures_written = 0;                     // otherwise than by being sampled
-  unsigned stages = 0, coordinates = 0;              // sampled, and read by texcoord: bit n
+  unsigned stages = 0;                               // sampled: bit n
   bool writes_depth = false;
   bool samples_ahead = true;
 
@@ -158,13 +158,12 @@ void PixelProgram::Decoded::append(const isa::Instruction& instruction, std::siz
       instruction.opcode == texkill || instruction.opcode == texdepth || instruction.opcode == texcoord ||
       instruction.opcode == texcrd || instruction.opcode == texm3x2pad || instruction.opcode == texm3x3pad ||
       instruction.opcode == texm3x3 || instruction.opcode == texdp3 || instruction.opcode == texm3x2depth;
-  const unsigned own_stage = 1u << instruction.destination.index;
-  if (!none) stages |= own_stage;
-  if (instruction.opcode == texcoord) coordinates |= own_stage;
-  const isa::Source own{isa::RegisterFile::texture, instruction.destination.index};
-  samples_ahead &= instruction.opcode == tex || instruction.opcode == texcoord ||
-                   (instruction.opcode == texld && instruction.sources[0] == own);
-  samples_ahead &= (stages & coordinates) == 0;
+  if (!none) stages |= 1u << instruction.destination.index;
+  isa::Source source = instruction.sources[0];
+  source.swizzle[3] = 3;  // t#.xyz is t#
+  const bool own = source == isa::Source{isa::RegisterFile::texture, instruction.destination.index};
+  samples_ahead &=
+      instruction.opcode == tex || instruction.opcode == texcoord || (instruction.opcode == texld && own);
 }
 
 void PixelProgram::Decoded::decide_in_place(std::size_t issued) {

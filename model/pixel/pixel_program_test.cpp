@@ -144,9 +144,10 @@ TEST(PixelProgram, OnlyWhatNeedsNoCoordinatesSamplesAhead) {
   };
   EXPECT_TRUE(ahead("ps_1_1\ntex t0\ntexcoord t1\nmul r0, t0, t1\n"));
   EXPECT_TRUE(ahead("ps_1_4\ntexld r0, t0\nmov r0, r0\n"));
+  EXPECT_TRUE(ahead("ps_1_4\ntexld r0, t0.xyz\nmov r0, r0\n"));
+  EXPECT_FALSE(ahead("ps_1_4\ntexld r0, t0.xyw\nmov r0, r0\n"));
+  EXPECT_FALSE(ahead("ps_1_4\ntexld r0, t0_dw.xyw\nmov r0, r0\n"));
   EXPECT_FALSE(ahead("ps_1_4\ntexld r0, t1\nmov r0, r0\n"));
-  EXPECT_FALSE(ahead("ps_1_1\ntexcoord t0\ntex t0\nmov r0, t0\n"));
-  EXPECT_FALSE(ahead("ps_1_1\ntex t0\ntexcoord t0\nmov r0, t0\n"));
   EXPECT_FALSE(ahead("ps_1_1\ntexkill t0\nmov r0, v0\n"));
   EXPECT_FALSE(ahead("ps_1_1\ntex t0\ntexbem t1, t0\nmov r0, t1\n"));
 }
