@@ -202,6 +202,12 @@ class PixelValidator {
     const int stage = instruction.destination.index;
     if (instruction.destination.file != RegisterFile::texture)
       reject(program_, instruction, "the destination of a texture address instruction is t#");
+    if (stage <= last_stage_)
+      reject(
+          program_, instruction,
+          fmt::format("t{} after t{}: texture address instructions stand in the order of their stages, one a "
+                      "stage before ps_1_4",
+                      stage, last_stage_));
     check_rows(instruction);
     if (instruction.source_count == 0) return;
     const Source& source = instruction.sources[0];
@@ -251,9 +257,8 @@ class PixelValidator {
     if (coordinates && selectors_[source.index] && *selectors_[source.index] != whole)
       reject(program_, instruction,
              fmt::format("every read of t{} must select the same: .xyz or .xyw", source.index));
-    const unsigned expected = source.modifier == dw ? 0x3 : 0x7;
-    if (instruction.opcode == texcrd && destination.mask != expected && destination.mask != 0x3)
-      reject(program_, instruction, "texcrd writes .rgb or .rg (.rg with _dw), never the fourth component");
+    if (instruction.opcode == texcrd && destination.mask != (source.modifier == dw ? 0x3 : 0x7))
+      reject(program_, instruction, "texcrd writes .rgb, or .rg with _dw, never the fourth component");
   }
 
   // Matrix rows: texm3x2pad and its last row, texm3x3pad twice and its last row, in consecutive stages of one
@@ -381,6 +386,7 @@ class PixelValidator {
   void record_texture(const Instruction& instruction) {
     const Destination& destination = instruction.destination;
     const std::size_t index = destination.index;
+    last_stage_ = destination.index;
     if (instruction.opcode == texdepth || instruction.opcode == texm3x2depth) depth_ = destination;
     if (instruction.opcode == texkill || instruction.opcode == texdepth) return;
     if (version_1_4_) {
@@ -411,6 +417,7 @@ class PixelValidator {
   std::optional<Destination> depth_;              // of texdepth or texm3x2depth
   int texture_slots_ = 0, arithmetic_slots_ = 0;  // of this phase
   int comparisons_ = 0, dot_products_ = 0, bumps_ = 0, divisions_ = 0;
+  int last_stage_ = -1;  // of a texture address instruction
   int pads_ = 0, pad_rows_ = 0, pad_stage_ = 0, pad_source_ = 0;
   WrittenComponents written_{}, before_phase_{}, texture_written_{};
   std::array<bool, 8> bumped_{};

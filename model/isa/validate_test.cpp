@@ -83,6 +83,34 @@ TEST(Validate, BemPerturbsByATemporary) {
   EXPECT_EQ(error_of("ps_1_4\ntexld r2, t0\nbem r1.rg, c0, -r2_bx2\nphase\nmov r0, v0\n"), "accepted");
 }
 
+// "The positions of the instructions are required to be in order" (DirectX 8, "Pixel Shader Texture
+// Addressing").
+TEST(Validate, TextureAddressesGoByTheirStages) {
+  EXPECT_EQ(
+      error_of("ps_1_1\ntex t1\ntex t0\nmov r0, t0\n"),
+      "p:3:1: t0 after t1: texture address instructions stand in the order of their stages, one a stage "
+      "before ps_1_4");
+  EXPECT_NE(error_of("ps_1_1\ntex t0\ntex t0\nmov r0, t0\n"), "accepted");
+  EXPECT_NE(error_of("ps_1_3\ntex t0\ntexkill t0\nmov r0, t0\n"), "accepted");
+  EXPECT_NE(error_of("ps_1_2\ntex t0\ntexbem t1, t0\ntexbem t1, t0\nmov r0, t1\n"), "accepted");
+  EXPECT_EQ(error_of("ps_1_1\ntex t0\ntex t2\nmov r0, t2\n"), "accepted");
+  EXPECT_EQ(error_of("ps_1_4\ntexld r1, t1\ntexld r0, t0\nmov r0, r1\n"), "accepted");
+}
+
+TEST(Validate, TexcrdWritesTwoComponentsByDwOnly) {
+  EXPECT_EQ(error_of("ps_1_4\ntexcrd r0.rg, t0\nmov r0, v0\n"),
+            "p:2:1: texcrd writes .rgb, or .rg with _dw, never the fourth component");
+  EXPECT_EQ(error_of("ps_1_4\ntexcrd r0.rg, t0_dw.xyw\nmov r0, v0\n"), "accepted");
+  EXPECT_NE(error_of("ps_1_4\ntexcrd r0.rgb, t0_dw.xyw\nmov r0, v0\n"), "accepted");
+}
+
+TEST(Validate, MacrosWriteTheirComponents) {
+  EXPECT_EQ(error_of("vs_1_1\nm4x4 r0.xyz, v0, c0\nmov oPos, v0\n"),
+            "p:2:1: this macro needs the write mask .xyzw");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0\nm4x4 oFog, v0, c0\n"),
+            "p:3:1: oFog and oPts are scalars, a macro writes several components");
+}
+
 TEST(Validate, ReadsOfTextureRegistersNeedTheirComponents) {
   EXPECT_EQ(error_of("ps_1_1\nmov t1.a, v0\nmov r0, t1\n"),
             "p:3:1: t1 is read before it is written (all the components read)");

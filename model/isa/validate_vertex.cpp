@@ -151,12 +151,12 @@ class VertexValidator {
     const Source& vector = instruction.sources[0];
     const Source& matrix = instruction.sources[1];
     const unsigned expected = (1u << rows) - 1;
-    const bool first_three =
-        rows == 4 && destination.mask == 0x7;  // "Destination Register Masking" allows it
-    if (destination.mask != expected && !first_three)
+    if (destination.mask != expected)
       reject(program_, instruction,
              fmt::format("this macro needs the write mask .{}",
                          std::string_view("xyzw").substr(0, static_cast<std::size_t>(rows))));
+    if (destination.file == RegisterFile::fog_out || destination.file == RegisterFile::point_size_out)
+      reject(program_, instruction, "oFog and oPts are scalars, a macro writes several components");
     if (matrix.negate || matrix.swizzle != kIdentity)
       reject(program_, instruction, "the matrix of a macro takes no swizzle and no negation");
     const auto overlaps = [&](const Source& source, int count) {
