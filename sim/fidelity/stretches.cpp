@@ -105,8 +105,12 @@ Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Su
   clocks[kBlend] = colored / width;
   double bytes = quads * traffic.depth + colored * (traffic.color + traffic.texture);
   const auto in_agp = [&](std::uint32_t buffer) { return trace_.buffers[buffer].place == MemoryPlace::agp; };
-  (in_agp(job.draw->vertex_buffer) ? clocks[kAgp] : bytes) += fetched;
-  (in_agp(job.draw->index_buffer) ? clocks[kAgp] : bytes) += 2 * indices;
+  const double in_video = in_bursts(machine_.fetch.line_bytes, machine_) / machine_.fetch.line_bytes;
+  const auto fetch = [&](std::uint32_t buffer, double some) {
+    in_agp(buffer) ? clocks[kAgp] += some : bytes += some * in_video;
+  };
+  fetch(job.draw->vertex_buffer, fetched);
+  fetch(job.draw->index_buffer, 2 * indices);
   clocks[kAgp] = agp_clocks(clocks[kAgp]);
   clocks[kMemory] = memory_clocks(bytes, machine_);
   return clocks;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <span>
 
 #include "sim/units/cache/cache_tags.h"
@@ -41,6 +42,10 @@ void each_sample(const DrawWork& work, Look look) {
 
 }  // namespace
 
+double in_bursts(double bytes, const Machine& machine) {
+  return std::ceil(bytes / machine.memory.burst_bytes) * machine.memory.burst_bytes;
+}
+
 TrafficCounter::TrafficCounter(const Machine& machine, const MemoryLayout& layout)
     : machine_(machine), layout_(layout), is_clear_(layout.depth.lines(), 0) {}
 
@@ -54,7 +59,7 @@ Traffic TrafficCounter::of(const DrawJob& job) {
 void TrafficCounter::count_depth(const DrawJob& job, Traffic& traffic) {
   if (!uses_depth(*job.draw)) return;
   const DrawWork& work = *job.work;
-  const double line_bytes = layout_.depth.line_bytes();
+  const double line_bytes = in_bursts(layout_.depth.line_bytes(), machine_);
   CacheTags cache(machine_.depth.cache_lines, machine_.depth.cache_ways);
   auto clear = work.clear_tiles.begin();
   double count = 0, bytes = 0;
@@ -78,8 +83,10 @@ void TrafficCounter::count_depth(const DrawJob& job, Traffic& traffic) {
 void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
   const Draw& draw = *job.draw;
   if (!draw.state.color_write) return;
-  const double line_bytes = layout_.color.line_bytes(), read_bytes = draw.state.blend ? line_bytes : 0;
-  const double fill_bytes = draw.source ? machine_.texture.line_bytes : machine_.texture.fill_bytes;
+  const double line_bytes = in_bursts(layout_.color.line_bytes(), machine_);
+  const double read_bytes = draw.state.blend ? line_bytes : 0;
+  const double fill_bytes =
+      in_bursts(draw.source ? machine_.texture.line_bytes : machine_.texture.fill_bytes, machine_);
   const int line_shift =
       std::countr_zero(static_cast<unsigned>(machine_.texture.line_bytes / 16));  // of blocks
   CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);

@@ -16,6 +16,9 @@ struct Traffic {
   double texel_blocks = 0;  // that such a quad reads
 };
 
+// What a request for so many bytes moves: whole bursts.
+double in_bursts(double bytes, const Machine& machine);
+
 // Counts what the frame and texture caches of a machine would move, on their tags alone: for the quads of
 // sampled triangles (DrawWork::is_sampled), beginning with empty caches at the start of a draw.
 class TrafficCounter {

@@ -38,7 +38,7 @@ TEST(Traffic, ClearLinesOfDepthAreNotRead) {
 
 // Of eight quads, each in a line of its own, that sample one block each, in three lines of the texture. The
 // colour cache holds four lines.
-Traffic color_traffic(const std::function<void(Draw&)>& change) {
+Traffic color_traffic(const std::function<void(Draw&)>& change, int burst_bytes = 16) {
   testing::RandomTrace made = testing::simple_trace(2);
   made.trace.surfaces = 1;
   Draw& draw = std::get<Draw>(made.trace.commands[1]);
@@ -54,6 +54,7 @@ Traffic color_traffic(const std::function<void(Draw&)>& change) {
   machine.blend.cache_ways = 1;
   machine.texture.line_bytes = 64;
   machine.texture.fill_bytes = 32;
+  machine.memory.burst_bytes = burst_bytes;
   const MemoryLayout layout = lay_out(made.trace, machine);
   const PreparedDraws draws = prepare_draws(made.trace, made.work, machine, layout);
   return TrafficCounter(machine, layout).of(draws.jobs[0]);
@@ -71,6 +72,12 @@ TEST(Traffic, AMissReadsAPartOfATextureLineAndAllOfASurfaces) {
   EXPECT_EQ(8 * texture.texture, 3 * 32);
   EXPECT_EQ(texture.texel_blocks, 1);
   EXPECT_EQ(8 * color_traffic([](Draw& draw) { draw.source = 1; }).texture, 3 * 64);
+}
+
+TEST(Traffic, IsOfWholeBursts) {
+  const Traffic traffic = color_traffic([](Draw&) {}, 48);
+  EXPECT_EQ(8 * traffic.texture, 3 * 48) << "for 32";
+  EXPECT_EQ(8 * traffic.color, 4 * 96) << "for 64";
 }
 
 TEST(Traffic, NoColourIsNoTraffic) {
