@@ -52,9 +52,10 @@ struct Result {
   std::vector<UnitBooks> units;
   std::vector<UnitStatistic> statistics;
   std::vector<UnitLeftOut> units_left_out;
-  std::vector<ChannelUse> channels;  // where events are simulated
-  std::vector<Cycle> command_ends;   // core cycle at which each command of the trace was done
-  std::vector<Cycle> frame_cycles;   // of each frame (`frame_ends`); they add up to `cycles`
+  std::vector<ChannelUse> channels;      // where events are simulated
+  std::vector<Cycle> command_ends;       // core cycle at which each command of the trace was done
+  std::vector<Cycle> frame_cycles;       // of each frame (`frame_ends`); they add up to `cycles`
+  std::vector<double> frame_plus_minus;  // as `cycles_plus_minus`, of each frame alone; empty: simulated
 
   double seconds_of(Cycle some) const { return seconds * share(some); }
   double share(Cycle some) const {

@@ -16,12 +16,13 @@ using Json = nlohmann::ordered_json;
 
 Json frames_json(const sim::Result& timing) {
   Json out = Json::array();
-  for (const sim::Cycle cycles : timing.frame_cycles) {
+  for (std::size_t i = 0; i < timing.frame_cycles.size(); ++i) {
+    const sim::Cycle cycles = timing.frame_cycles[i];
     Json frame = {{"cycles", cycles},
                   {"milliseconds", 1000 * timing.seconds_of(cycles)},
                   {"frames_per_second", timing.frames_per_second(cycles)}};
-    // Both of the whole run; an estimate has no events.
-    if (timing.cycles_plus_minus > 0) frame["cycles_plus_minus"] = timing.cycles_plus_minus;
+    if (timing.cycles_plus_minus > 0) frame["cycles_plus_minus"] = timing.frame_plus_minus[i];
+    // Of the whole run; an estimate has no events.
     if (timing.event_hash != 0) frame["event_hash"] = fmt::format("{:016x}", timing.event_hash);
     out.push_back(std::move(frame));
   }

@@ -13,16 +13,16 @@
 namespace splatscope::sim {
 namespace {
 
-// Of a population. A prime: where equal frames divide it, all are sampled in the same places.
-constexpr std::size_t kSamples = 47;
-constexpr std::size_t kFewest = 4;   // units to a sample, or all are simulated
-constexpr std::size_t kUnit = 2;     // stretches
-constexpr std::size_t kWarming = 2;  // stretches before a sample
-constexpr std::size_t kHead = 2;     // stretches at the start of a draw that are simulated
-constexpr std::size_t kTail = 2;     // at least, at its end
+constexpr std::size_t kSamples = 47;  // of a population
+constexpr std::size_t kFewest = 4;    // units to a sample, or all are simulated
+constexpr std::size_t kUnit = 2;      // stretches
+constexpr std::size_t kWarming = 2;   // stretches before a sample
+constexpr std::size_t kHead = 2;      // stretches at the start of a draw that are simulated
+constexpr std::size_t kTail = 2;      // at least, at its end
 constexpr double kCutBias = 0.004;
 
-// Units of draws that have their state in common.
+// Units of the draws of a frame that have their state in common. Frames are apart: what draws of one take
+// says little of another, as in progressive frames from coarse to fine.
 struct Population {
   std::size_t units = 0;
   double expected = 0;     // clocks of them all
@@ -64,16 +64,19 @@ struct Population {
   }
 };
 
-using State = std::tuple<std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>,
-                         std::uint32_t, std::optional<std::uint32_t>, bool, bool, bool, bool>;
-State state_of(const Draw& draw) {
+using State =
+    std::tuple<std::size_t, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>,
+               std::uint32_t, std::optional<std::uint32_t>, bool, bool, bool, bool>;
+State state_of(std::size_t frame, const Draw& draw) {
   const DrawState& s = draw.state;
-  return {draw.vertex_program, draw.pixel_program, draw.texture,  draw.target, draw.source,
-          s.depth_test,        s.depth_write,      s.color_write, s.blend};
+  return {frame,       draw.vertex_program, draw.pixel_program, draw.texture,  draw.target,
+          draw.source, s.depth_test,        s.depth_write,      s.color_write, s.blend};
 }
 
-// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5).
-double student_t(double freedom) {
+// 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5) for a variance from the n - 1 differences of
+// neighbours, which overlap and so have fewer degrees of freedom (von Neumann et al. 1941).
+double student_t(double n) {
+  const double freedom = 2 * (n - 1) * (n - 1) / (3 * n - 4);
   const double z = 1.959964;
   return z + (z * z * z + z) / (4 * freedom) +
          (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
@@ -118,10 +121,12 @@ class Sampler {
     Result result;
     result.cycles = static_cast<Cycle>(std::llround(estimated(machine_->cycles())));
     result.seconds = static_cast<double>(result.cycles) * static_cast<double>(machine_->core.time(1)) * 1e-15;
-    result.cycles_plus_minus = plus_minus();
     for (const Cycle end : machine_->host->command_ends())
       result.command_ends.push_back(static_cast<Cycle>(std::llround(estimated(machine_->core_cycle(end)))));
     result.frame_cycles = cycles_of_frames(trace_, result);
+    const std::size_t frames = result.frame_cycles.size();
+    result.cycles_plus_minus = plus_minus(0, frames);
+    for (std::size_t i = 0; i < frames; ++i) result.frame_plus_minus.push_back(plus_minus(i, i + 1));
     add_books(result);
     result.units_left_out = left_out(trace_, machine_->built, machine_->jobs);
     return result;
@@ -142,12 +147,14 @@ class Sampler {
   // What Stretches expect of every unit.
   void expect(const Machine& machine) {
     Stretches stretches(trace_, machine, layout_, draws_);
-    std::size_t next = 0;
+    std::size_t frame = 0;
     for (const Command& command : trace_.commands) {
       if (std::holds_alternative<Clear>(command)) stretches.clear();
+      if (std::holds_alternative<Present>(command)) ++frame;
       if (!std::holds_alternative<Draw>(command)) continue;
-      const DrawJob& job = draws_.jobs[next++];
-      Population& population = populations_[state_of(*job.draw)];
+      const DrawJob& job = draws_.jobs[population_of_.size()];
+      Population& population = populations_[state_of(frame, *job.draw)];
+      population_of_.push_back(&population);
       const std::vector<Clocks> clocks = stretches.of(job);
       std::vector<double>& units = expected_.emplace_back(units_between(job));
       for (std::size_t i = 0; i < units.size() * kUnit; ++i)
@@ -162,7 +169,7 @@ class Sampler {
     thin_.reserve(draws_.jobs.size());
     for (std::size_t i = 0; i < draws_.jobs.size(); ++i) {
       DrawJob& job = draws_.jobs[i];
-      Population& population = populations_[state_of(*job.draw)];
+      Population& population = *population_of_[i];
       if (!population.is_sampled()) continue;
       thin_draw(job, population, expected_[i]);
       population.passed += expected_[i].size();
@@ -226,16 +233,17 @@ class Sampler {
     return sum;
   }
 
-  double plus_minus() const {
+  // Of frames first to last - 1 together.
+  double plus_minus(std::size_t first, std::size_t last) const {
     double variance = 0, estimate = 0;
     std::size_t fewest = kSamples;
     for (const auto& [state, population] : populations_) {
-      if (!population.is_sampled()) continue;
+      if (!population.is_sampled() || std::get<0>(state) < first || std::get<0>(state) >= last) continue;
       variance += population.variance();
       estimate += population.estimate();
       fewest = std::min(fewest, population.sampled_cycles.size());
     }
-    return student_t(static_cast<double>(fewest - 1)) * std::sqrt(variance) + kCutBias * estimate;
+    return student_t(static_cast<double>(fewest)) * std::sqrt(variance) + kCutBias * estimate;
   }
 
   // Rounded so that they still add up.
@@ -264,6 +272,7 @@ class Sampler {
   MemoryLayout layout_;
   PreparedDraws draws_;
   std::map<State, Population> populations_;
+  std::vector<Population*> population_of_;     // each draw
   std::vector<std::vector<double>> expected_;  // by draw and unit
   std::vector<ThinDraw> thin_;
   std::unique_ptr<SimulatedMachine> machine_;
