@@ -69,6 +69,10 @@ TEST(Exploration, wishes_do_what_they_are_for) {
   EXPECT_LT(rows[4].cells[kSurfel].megabytes, base[kSurfel].megabytes) << "4 corners";
   EXPECT_GT(fps(5, kSurfel), fps(4, kSurfel)) << "point sprites";
   EXPECT_LT(rows[5].cells[kPixel].psnr, base[kPixel].psnr - 5) << "point sprites are no ellipses";
+  EXPECT_EQ(
+      rows[5].cells[kSurfel].psnr,
+      what_if_picture(small_scene(), kBothMachines[0], wishes[5], traces::Algorithm::ewa_per_surfel).psnr)
+      << "sprites have weights of their own";
 }
 
 // Lines of docs/exploration.md, made again.

@@ -133,7 +133,7 @@ class Drawings {
     Drawing drawing;
     drawing.trace = algorithm == Algorithm::ewa_per_pixel
                         ? traces::record(scene, machine.numbers).trace
-                        : traces::record(scene, weights_of(hardware.frame, machine.numbers)).trace;
+                        : traces::record(scene, weights_of(scene, hardware, machine.numbers)).trace;
     Rendered rendered = render(drawing.trace, render_options(machine));
     drawing.work = std::move(rendered.work);
     drawing.psnr = psnr(rendered.frame, reference_);
@@ -144,17 +144,20 @@ class Drawings {
  private:
   using Key = std::tuple<bool, FrameFormat, bool, Algorithm>;
 
-  const traces::CapturedWeights& weights_of(FrameFormat frame, const NumberFormats& numbers) {
-    const auto found = weights_.find(frame);
+  // Of `scene`, which differs in what is captured by the key alone.
+  const traces::CapturedWeights& weights_of(const traces::Scene& scene, const Hardware& hardware,
+                                            const NumberFormats& numbers) {
+    const std::pair key(hardware.frame, hardware.geometry == Geometry::point_sprites);
+    const auto found = weights_.find(key);
     if (found != weights_.end()) return found->second;
-    return weights_.emplace(frame, traces::capture_weights(scene_, numbers)).first->second;
+    return weights_.emplace(key, traces::capture_weights(scene, numbers)).first->second;
   }
 
   const traces::Scene& scene_;
   std::string machine_;
   kernels::ReferencePicture reference_;
   std::map<Key, Drawing> drawings_;
-  std::map<FrameFormat, traces::CapturedWeights> weights_;
+  std::map<std::pair<FrameFormat, bool>, traces::CapturedWeights> weights_;
 };
 
 WhatIfRow::Cell cell_of(const Drawings::Drawing& drawing, const Hardware& hardware, const Machine& machine) {
