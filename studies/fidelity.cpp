@@ -164,6 +164,16 @@ FidelityFrame offset_frame(std::string_view name, const traces::Scene& scene) {
                with_offset(scene, traces::DepthOffsetScheme::viewing_ray, scene.splatting.depth_offset));
 }
 
+// From coarse to fine (Ren 2002, 6.2): frames that are not alike.
+std::vector<FidelityFrame> progressive_frames() {
+  return {named(
+      "progressive",
+      traces::parse_scene(
+          "surfels.generator = \"sphere\"\nsurfels.count = 50000\nframe.width = 256\nframe.height = 256\n"
+          "hierarchy.culling = \"blocks\"\nhierarchy.progressive = true\n",
+          "progressive"))};
+}
+
 }  // namespace
 
 FidelityFrame frame_of(traces::Scene scene) {
@@ -208,7 +218,8 @@ void study_fidelity(Findings& findings, const Progress& progress) {
   };
   add("Table 1", rows_of(table1_frames(), part(progress, 0, 0.2)));
   add("Table 2", all_table2_rows(part(progress, 0.2, 0.8)));
-  add("Figures", rows_of(figure_frames(), part(progress, 0.8, 0.95)));
+  add("Figures", rows_of(figure_frames(), part(progress, 0.8, 0.9)));
+  add("Progressive", rows_of(progressive_frames(), part(progress, 0.9, 0.95)));
   add_fidelity_report(findings, groups);
   study_saving(findings, part(progress, 0.95, 1));
 }
