@@ -85,7 +85,7 @@ void relax(const TriangleCorners& mesh, const Voxels& voxels, const VoxelIndex& 
     }
     for_each([&](std::size_t i, auto&) {
       const glm::dvec3 to = pushed(before, i, around[i]);
-      const std::uint32_t cell = index.at(glm::uvec3((to - voxels.low) / voxels.size));
+      const std::uint32_t cell = index.at(glm::uvec3(glm::max((to - voxels.low) / voxels.size, 0.0)));
       if (cell != VoxelIndex::kNone) points[i] = closest_sample(mesh, voxels.triangles_of(cell), to);
     });
   }
