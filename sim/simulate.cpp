@@ -29,7 +29,7 @@ Result run(SimulatedMachine& machine, const Trace& trace, const std::function<vo
   if (progress) report_progress(machine, progress);
   for (Observer* observer : observers) {
     observer->begin(machine);
-    for (ClockDomain* domain : domains) domain->observe(*observer, domain == &machine.core);
+    for (ClockDomain* domain : domains) domain->observe(*observer);
   }
   machine.run();
 

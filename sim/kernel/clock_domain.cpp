@@ -81,9 +81,9 @@ void ClockDomain::call(std::uint64_t due) {
   }
 }
 
-void ClockDomain::observe(Observer& observer, bool samples) {
-  watches_.push_back({&observer, samples ? Cycle{0} : kNever});
-  if (samples) next_sample_ = 0;
+void ClockDomain::observe(Observer& observer) {
+  watches_.push_back({&observer, 0});
+  next_sample_ = 0;
 }
 
 void ClockDomain::tell(std::size_t place, Cycle until) const {
@@ -95,7 +95,9 @@ void ClockDomain::tell(std::size_t place, Cycle until) const {
 void ClockDomain::sample() {
   next_sample_ = kNever;
   for (Watch& watch : watches_) {
-    if (now_ >= watch.next_sample) watch.next_sample = watch.observer->sample(now_);
+    if (now_ >= watch.next_sample) {
+      watch.next_sample = first_at(watch.observer->sample(reference_cycle(now_)));
+    }
     next_sample_ = std::min(next_sample_, watch.next_sample);
   }
 }

@@ -82,10 +82,13 @@ class ClockDomain {
   Cycle reference_cycle(Cycle cycle) const {
     return period_ == reference_ ? cycle : cycle * period_ / reference_;
   }
+  // The first cycle whose reference cycle is `reference` or later; kNever where no run gets there.
+  Cycle first_at(Cycle reference) const {
+    return reference > kMostTime / reference_ ? kNever : cycles_of(reference * reference_, period_);
+  }
 
-  // Tells `observer`, which outlives the run, what its units book; where `samples`, it is also asked to
-  // sample.
-  void observe(Observer& observer, bool samples);
+  // Tells `observer`, which outlives the run, what its units book, and asks it to sample.
+  void observe(Observer& observer);
   // The last of it: what the units have booked since their last change, up to reference cycle `end`.
   void finish_observing(Cycle end);
   // Reference cycles before `at` that unit `place` was busy so far.
@@ -101,7 +104,7 @@ class ClockDomain {
 
   struct Watch {
     Observer* observer;
-    Cycle next_sample;  // kNever: none
+    Cycle next_sample;  // of this domain; kNever: none
   };
 
   void visit(Cycle now);

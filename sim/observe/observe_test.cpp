@@ -179,16 +179,23 @@ TEST(Timeline, LongNamesAndManyCommandsDoNotMakeItLonger) {
   }
 }
 
-TEST(TimeSeries, RowsAddUpToTheResult) {
-  const Observed run = observe(11, {}, 50);
-  std::istringstream in(run.series);
-  std::vector<std::vector<std::string>> rows;
+using Table = std::vector<std::vector<std::string>>;
+
+Table table_of(const std::string& series) {
+  std::istringstream in(series);
+  Table rows;
   for (std::string line; std::getline(in, line);) {
     rows.emplace_back();
     std::istringstream cells(line);
     for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
-    ASSERT_EQ(rows.front().size(), rows.back().size());
+    EXPECT_EQ(rows.front().size(), rows.back().size());
   }
+  return rows;
+}
+
+TEST(TimeSeries, RowsAddUpToTheResult) {
+  const Observed run = observe(11, {}, 50);
+  const Table rows = table_of(run.series);
   ASSERT_GT(rows.size(), 3u);
   EXPECT_EQ(std::to_string(run.result.cycles), rows.back().front());
   const auto sum = [&](const std::string& column, bool shares) {
@@ -206,6 +213,31 @@ TEST(TimeSeries, RowsAddUpToTheResult) {
               1e-5 * static_cast<double>(run.result.cycles));
   for (const UnitStatistic& statistic : run.result.statistics) {
     EXPECT_EQ(static_cast<double>(statistic.value), sum(statistic.unit_name + "." + statistic.name, false));
+  }
+}
+
+TEST(TimeSeries, RowsEndAtMultiplesOfTheInterval) {
+  const Observed run = observe(11, {}, 50);
+  const Table rows = table_of(run.series);
+  ASSERT_EQ(rows.size(), 1 + (run.result.cycles + 49) / 50);
+  for (std::size_t i = 1; i + 1 < rows.size(); ++i) EXPECT_EQ(rows[i].front(), std::to_string(50 * i));
+}
+
+// Cycles that are not visited change nothing: each row is what the referee sees, who visits all of them.
+TEST(TimeSeries, TheRefereeWritesTheSameRows) {
+  for (const unsigned seed : {3u, 7u, 11u}) {
+    for (const Cycle interval : {1, 7, 100}) {
+      RandomMaker maker(seed);
+      const RandomTrace made = maker.trace();
+      const Machine machine = maker.machine();
+      std::ostringstream series[2];
+      for (const Scheduler scheduler : {Scheduler::skip_ahead, Scheduler::referee}) {
+        TimeSeries rows(series[static_cast<int>(scheduler)], interval);
+        Observer* const observers[] = {&rows};
+        simulate(made.trace, made.work, machine, scheduler, {}, observers);
+      }
+      EXPECT_TRUE(series[0].str() == series[1].str()) << "seed " << seed << ", every " << interval;
+    }
   }
 }
 

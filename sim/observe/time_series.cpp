@@ -25,13 +25,13 @@ void TimeSeries::begin(const SimulatedMachine& machine) {
   busy_.resize(machine.units.size());
 }
 
-void TimeSeries::row(Cycle now) {
-  out_ << now;
+void TimeSeries::row(Cycle end) {
+  out_ << end;
   std::size_t unit = 0, statistic = 0;
   for (const ClockDomain* domain : {&machine_->core, &machine_->bus}) {
     for (std::size_t place = 0; place < domain->units().size(); ++place, ++unit) {
-      const Cycle busy = domain->busy(place, now);
-      out_ << ',' << static_cast<double>(busy - busy_[unit]) / static_cast<double>(now - last_);
+      const Cycle busy = domain->busy(place, end);
+      out_ << ',' << static_cast<double>(busy - busy_[unit]) / static_cast<double>(end - last_);
       busy_[unit] = busy;
       for (const Statistic& entry : domain->units()[place]->statistics()) {
         out_ << ',' << entry.value - statistics_[statistic];
@@ -41,15 +41,22 @@ void TimeSeries::row(Cycle now) {
   }
   for (const auto& channel : machine_->channels) out_ << ',' << channel->items();
   out_ << '\n';
-  last_ = now;
+  last_ = end;
+}
+
+// Whatever the machine did since its last act belongs to the rows that end at or before `until`: what it is
+// now, it was at the end of each of them, and a unit that was busy then was busy through them.
+void TimeSeries::rows(Cycle until) {
+  while (last_ + interval_ <= until) row(last_ + interval_);
 }
 
 Cycle TimeSeries::sample(Cycle now) {
-  if (now > 0) row(now);
-  return now + interval_;
+  rows(now);
+  return last_ + interval_;
 }
 
 void TimeSeries::end(const Result& result) {
+  rows(result.cycles);
   if (result.cycles > last_) row(result.cycles);
 }
 

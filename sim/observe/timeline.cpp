@@ -161,6 +161,7 @@ void Timeline::count(Counter& counter, std::uint64_t value, Cycle now) {
 
 Cycle Timeline::sample(Cycle now) {
   if (now > window_.last) return kNever;
+  if (now < next_sample_) return next_sample_;
   for (std::size_t i = 0; i < buses_.size(); ++i) {
     const std::uint64_t clocks = data_clocks(*machine_->memory[i]);
     if (now > sampled_at_ && sampled_at_ >= window_.first) {
@@ -169,11 +170,11 @@ Cycle Timeline::sample(Cycle now) {
     data_clocks_[i] = clocks;
   }
   sampled_at_ = now;
-  if (now < window_.first) return window_.first;
+  if (now < window_.first) return next_sample_ = window_.first;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     count(channels_[i], machine_->channels[i]->items(), now);
   }
-  return now + kCounterInterval;
+  return next_sample_ = now + kCounterInterval;
 }
 
 void Timeline::end(const Result& result) {

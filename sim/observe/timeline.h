@@ -57,7 +57,7 @@ class Timeline final : public Observer {
   std::vector<std::string> slice_tails_;  // by book
   std::vector<Counter> channels_, buses_;
   std::vector<std::uint64_t> data_clocks_;  // of each memory channel at the last sample
-  Cycle sampled_at_ = 0;
+  Cycle sampled_at_ = 0, next_sample_ = 0;
   std::vector<char> buffer_;
   std::size_t used_ = 0;     // of it, not written yet
   std::uint64_t bytes_ = 0;  // of all events so far
