@@ -134,6 +134,7 @@ void run(const Options& options, bool quiet) {
   std::optional<kernels::ScreenMap> map;
   if (options.reference) map = studies::screen_map_by_name(*options.reference);
   const traces::OutputFolder folder(options.out);  // first: the files below may lie in it
+  studies::ResultFiles files(options.out);
   studies::check(options.observe);
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.input, loading.callback());
@@ -159,8 +160,7 @@ void run(const Options& options, bool quiet) {
   }
   ProgressBar running("running", quiet);
   studies::FrameRun result = studies::run_frame(
-      input.trace, machine, fidelity, running.callback(),
-      studies::earlier_frames_writer(input.trace, options.out),
+      input.trace, machine, fidelity, running.callback(), studies::earlier_frames_writer(input.trace, files),
       {.seed = options.seed, .observers = watching, .heat_maps = heat_maps ? &*heat_maps : nullptr});
   running.clear();
   if (reference) {
@@ -169,7 +169,7 @@ void run(const Options& options, bool quiet) {
     result.reference = {std::move(*reference), comparison};
   }
   const std::vector<std::string> observed = observers.commit();
-  studies::write_run(input, machine, fidelity, result, options.out);
+  studies::write_run(input, machine, fidelity, result, files);
   print(input, machine, result);
   if (result.reference) print(result.reference->comparison);
   std::cout << fmt::format("  frame.png, frame.exr, depth.exr, results.json and report.html in {}\n",

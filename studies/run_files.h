@@ -16,12 +16,9 @@ std::string picture_name(std::size_t number, std::size_t frames);
 // The files beside its own that `opened` was read from: what a scene names, and what they name in turn.
 std::vector<traces::NamedFile> files_of(const Opened& opened);
 
-// Throws UserError where one of `files` has the place of a result that a run may write into `folder`.
+// Throws UserError where one of `files` has the place of a result that a run may write into `folder`, or that
+// stands there and would go away.
 void expect_apart_from_results(const std::vector<traces::NamedFile>& files,
                                const std::filesystem::path& folder);
-
-// Removes what an earlier run wrote into `folder`, by the `files` of its results.json, but for those of the
-// names in `kept`, so that the folder holds one run. What no run has listed stays, whatever its name.
-void remove_earlier_results(const std::filesystem::path& folder, const std::vector<std::string>& kept);
 
 }  // namespace splatscope::studies

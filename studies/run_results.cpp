@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_invoke.h>
 
-#include "studies/json_text.h"
 #include "studies/report/run_report.h"
 #include "studies/roofline.h"
 #include "studies/run_files.h"
-#include "traces/output_files.h"
 
 namespace splatscope::studies {
 namespace {
@@ -161,20 +159,11 @@ Json volume_json(const traces::VolumeCounts& counts) {
           {"vertex_bytes", counts.vertex_bytes}};
 }
 
-void write_reference(const FrameRun& run, const std::filesystem::path& folder) {
+void write_reference(const FrameRun& run, const ResultFiles& files) {
   const Image reference = picture_of(run.reference->picture);
-  write_exr(reference, folder / "reference.exr");
-  write_png(reference, folder / "reference.png");
-  write_png(difference_picture(run.rendered.frame, run.reference->picture), folder / "difference.png");
-}
-
-std::vector<std::string> result_names(const Input& input, const FrameRun& run) {
-  std::vector<std::string> names{"frame.exr", "depth.exr", "results.json", "report.html"};
-  const std::size_t frames = frame_ends(input.trace).size();
-  for (std::size_t i = 0; i < frames; ++i) names.push_back(picture_name(i, frames));
-  if (run.reference) names.insert(names.end(), {"reference.exr", "reference.png", "difference.png"});
-  for (const HeatMap& map : run.heat_maps) names.push_back(map.name + ".exr");
-  return names;
+  write_exr(reference, files.place("reference.exr"));
+  write_png(reference, files.place("reference.png"));
+  write_png(difference_picture(run.rendered.frame, run.reference->picture), files.place("difference.png"));
 }
 
 }  // namespace
@@ -216,33 +205,30 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   return results;
 }
 
-OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder) {
-  return [folder, frames = frame_ends(trace).size(), number = std::size_t{0}](const Frame& frame) mutable {
-    if (number + 1 < frames) write_png(picture_of(frame), folder / picture_name(number, frames));
+OnFrame earlier_frames_writer(const Trace& trace, const ResultFiles& files) {
+  return [&files, frames = frame_ends(trace).size(), number = std::size_t{0}](const Frame& frame) mutable {
+    if (number + 1 < frames) write_png(picture_of(frame), files.place(picture_name(number, frames)));
     ++number;
   };
 }
 
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
-               const std::filesystem::path& folder) {
-  nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
-  const std::vector<std::string> files = result_names(input, run);
-  results["files"] = files;
-  const std::string text = json_text(results, 1) + "\n";
+               ResultFiles& files) {
+  const nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
   const Image picture = picture_of(run.rendered.frame);
-  remove_earlier_results(folder, files);
   // Side by side: to compress them takes longer than many a frame.
   oneapi::tbb::parallel_invoke(
-      [&] { write_exr(picture, folder / "frame.exr"); }, [&] { write_png(picture, folder / "frame.png"); },
-      [&] { write_exr(depth_of(run.rendered.frame), folder / "depth.exr"); },
+      [&] { write_exr(picture, files.place("frame.exr")); },
+      [&] { write_png(picture, files.place("frame.png")); },
+      [&] { write_exr(depth_of(run.rendered.frame), files.place("depth.exr")); },
       [&] {
-        if (run.reference) write_reference(run, folder);
+        if (run.reference) write_reference(run, files);
       },
       [&] {
-        for (const HeatMap& map : run.heat_maps) write_exr(map.image, folder / (map.name + ".exr"), "Y");
+        for (const HeatMap& map : run.heat_maps) write_exr(map.image, files.place(map.name + ".exr"), "Y");
       },
-      [&] { run_report(input, machine, run, results).write(folder / "report.html"); });
-  traces::write_file(folder / "results.json", text);
+      [&] { run_report(input, machine, run, results).write(files.place("report.html")); });
+  files.commit(results);
 }
 
 }  // namespace splatscope::studies

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "studies/result_files.h"
 #include "studies/run.h"
 
 // What a run of a scene or a trace leaves in its folder.
@@ -16,15 +16,14 @@ nlohmann::ordered_json timing_json(const sim::Result& timing);
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
                                   const FrameRun& run);
 
-// Writes the frames of `trace` before its last one as frame-000.png, frame-001.png, ... into `folder`, which
-// exists.
-OnFrame earlier_frames_writer(const Trace& trace, const std::filesystem::path& folder);
+// Writes the frames of `trace` before its last one as frame-000.png, frame-001.png, ... among `files`, which
+// outlive it.
+OnFrame earlier_frames_writer(const Trace& trace, const ResultFiles& files);
 
-// Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html into `folder`,
-// which exists; where the run has a reference also reference.exr, reference.png and difference.png, and into
-// the results how far the last frame is from it; its heat maps as NAME.exr. What an earlier run wrote there,
-// and this one does not, goes away.
+// Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html; where the run
+// has a reference also reference.exr, reference.png and difference.png, and into the results how far the last
+// frame is from it; its heat maps as NAME.exr. Commits `files`.
 void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
-               const std::filesystem::path& folder);
+               ResultFiles& files);
 
 }  // namespace splatscope::studies

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "command_line.h"
@@ -146,6 +147,40 @@ TEST(CommandLine, ALaterRunTakesTheFolderOver) {
     folder.file("o/results.json", other);
     ASSERT_EQ(run_program({"run", "../small.toml", "--out", "."}, folder.path() / "o").status, 0) << other;
     EXPECT_EQ(names(), with(own)) << other;
+  }
+}
+
+std::map<std::string, std::string> texts_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> texts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    texts[entry.path().filename().string()] = entry.is_directory() ? "" : text_of(entry.path());
+  return texts;
+}
+
+// The new results stand in the folder, or the old ones: never both.
+TEST(CommandLine, ARunThatFailsLeavesTheFolderAsItWas) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  Trace frames;
+  frames.width = frames.height = 4;
+  frames.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}};
+  traces::write_trace(frames, folder.path() / "two.trace");
+  ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
+  auto before = texts_in(folder.path() / "o");
+  const std::string full_disk =
+      fmt::format("cd {} && (trap '' XFSZ; ulimit -f 20; {} run two.trace --out o) 2>said",
+                  folder.path().string(), SPLATSCOPE_PROGRAM);
+  EXPECT_NE(std::system(full_disk.c_str()), 0);
+  EXPECT_NE(text_of(folder.path() / "said").find("is the disk full?"), std::string::npos);
+  EXPECT_TRUE(before == texts_in(folder.path() / "o"));
+  for (const char* taken : {"frame-000.png", "frame.png", "report.html"}) {
+    std::filesystem::remove(folder.path() / "o" / taken);
+    std::filesystem::create_directory(folder.path() / "o" / taken);
+    before = texts_in(folder.path() / "o");
+    expect_refused(run_program({"run", "two.trace", "--out", "o"}, folder.path()),
+                   fmt::format("o/{}: is a folder, expected a place for a file", taken));
+    EXPECT_TRUE(before == texts_in(folder.path() / "o")) << taken;
+    std::filesystem::remove(folder.path() / "o" / taken);
   }
 }
 
