@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
-#include "studies/json_text.h"
+#include "studies/result_files.h"
 #include "studies/run_files.h"
 #include "studies/sweep.h"
 #include "traces/output_files.h"
@@ -39,9 +38,7 @@ void print(const studies::Sweep& sweep) {
 }
 
 void run(const Options& options, bool quiet) {
-  const std::vector<traces::NamedFile> written{
-      {"a result in --out", std::filesystem::path(options.out) / "results.json"}};
-  traces::expect_apart(written, {{"INPUT", options.input}, {"--machine", options.machine}});
+  studies::expect_apart_from_results({{"INPUT", options.input}, {"--machine", options.machine}}, options.out);
   Machine machine = machine::load(options.machine);
   for (const std::string& assignment : options.settings) machine::assign(machine, assignment);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
@@ -49,14 +46,13 @@ void run(const Options& options, bool quiet) {
   std::optional<traces::OutputFolder> folder;
   ProgressBar running("running", quiet);
   const auto before_work = [&](const studies::Opened& opened) {
-    traces::expect_apart(written, studies::files_of(opened));
+    studies::expect_apart_from_results(studies::files_of(opened), options.out);
     folder.emplace(options.out);
   };
   const studies::Sweep sweep = studies::run_sweep(options.input, machine, swept, fidelity, options.cache,
                                                   running.callback(), before_work);
   running.clear();
-  traces::write_file(folder->path() / "results.json",
-                     studies::json_text(studies::results_of(sweep, machine, fidelity), 1) + "\n");
+  studies::ResultFiles(folder->path()).commit(studies::results_of(sweep, machine, fidelity));
   print(sweep);
   fmt::print("{:.1f} s; results.json in {}\n", sweep.host_seconds, options.out);
 }

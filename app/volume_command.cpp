@@ -1,13 +1,11 @@
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "studies/run_files.h"
 #include "studies/volume_run.h"
-#include "traces/output_files.h"
 
 namespace splatscope::app {
 
@@ -29,14 +27,11 @@ void add_volume_command(CLI::App& app, Invocation& invocation) {
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();
   command->footer("Example: splatscope volume volume-head --out out/head");
   command->callback([options, &invocation] {
-    std::vector<traces::NamedFile> results;
-    for (const char* name : {"frame.png", "frame.exr", "results.json"})
-      results.push_back({"a result in --out", std::filesystem::path(options->out) / name});
-    traces::expect_apart(results, {{"SCENE", options->scene}});
+    studies::expect_apart_from_results({{"SCENE", options->scene}}, options->out);
     const auto precision = options->precision == "single" ? studies::Precision::single_precision
                                                           : studies::Precision::double_precision;
     const traces::VolumeScene scene = traces::load_volume_scene(options->scene);
-    traces::expect_apart(results, scene.files);
+    studies::expect_apart_from_results(scene.files, options->out);
     std::string text;
     {
       ProgressBar progress("drawing", invocation.quiet);

@@ -3,14 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "model/error.h"
 #include "studies/json_text.h"
 #include "studies/measure.h"
 #include "studies/report/configuration.h"
+#include "studies/result_files.h"
 #include "traces/output_files.h"
 
 namespace splatscope::studies {
+
+namespace {
+
+constexpr const char* kFiles = "files";
+constexpr std::array kAlways{"report.html", "results.json"};
+
+// Before a file of this name is written: the first one takes the folder over. The pictures of a study stand
+// in it as soon as they are drawn, for it may take an hour; results.json comes last, and says that all are
+// there.
+void announce(nlohmann::ordered_json& results, const std::filesystem::path& folder, const std::string& name) {
+  if (!results.contains(kFiles)) remove_earlier_results(folder);
+  results[kFiles].push_back(name);
+}
+
+void announce_picture(nlohmann::ordered_json& results, const std::filesystem::path& folder,
+                      const std::string& name) {
+  for (const char* kind : {".exr", ".png"}) announce(results, folder, name + kind);
+}
+
+}  // namespace
 
 Progress part(const Progress& progress, double from, double to) {
   if (!progress) return {};
@@ -22,7 +44,9 @@ void tell(const Progress& progress, std::size_t done, std::size_t all) {
 }
 
 Findings::Findings(std::filesystem::path folder, std::string_view title, std::string_view lead)
-    : folder_(std::move(folder)), report_(title, lead), results_(nlohmann::ordered_json::object()) {}
+    : folder_(std::move(folder)), report_(title, lead), results_(nlohmann::ordered_json::object()) {
+  for (const char* name : kAlways) const traces::OutputFile probe(folder_.path() / name);
+}
 
 void Findings::result(std::string_view key, nlohmann::ordered_json value) {
   results_[std::string(key)] = std::move(value);
@@ -59,6 +83,7 @@ void Findings::write_picture(const std::string& name, const Image& image) const 
 void Findings::pictures(const std::vector<Picture>& pictures) {
   std::vector<Report::Picture> shown;
   for (const Picture& picture : pictures) {
+    announce_picture(results_, folder_.path(), picture.name);
     write_picture(picture.name, picture.image);
     shown.push_back({picture.name, picture.caption, picture.image});
   }
@@ -68,6 +93,8 @@ void Findings::pictures(const std::vector<Picture>& pictures) {
 void Findings::compare(const std::vector<Comparison>& comparisons) {
   std::vector<Report::Comparison> shown;
   for (const Comparison& c : comparisons) {
+    for (const char* start : {"", "reference-", "difference-"})
+      announce_picture(results_, folder_.path(), start + c.name);
     write_picture(c.name, c.simulated);
     write_picture("reference-" + c.name, c.reference);
     write_picture("difference-" + c.name, c.difference);
@@ -78,12 +105,14 @@ void Findings::compare(const std::vector<Comparison>& comparisons) {
 
 void Findings::plot(const std::string& name, const Plot& plot) {
   const std::string svg = svg_of(plot);
+  announce(results_, folder_.path(), name + ".svg");
   traces::write_file(folder_.path() / (name + ".svg"), svg);
   report_.drawing(plot.title, svg);
 }
 
 void Findings::write(double host_seconds) {
   results_["host"] = {{"seconds", host_seconds}};
+  for (const char* name : kAlways) announce(results_, folder_.path(), name);
   report_.heading("The machines");
   for (const std::string_view name : machine::built_in_names())
     add_configuration(report_, machine::load(name));

@@ -7,8 +7,8 @@
 
 #include "kernels/reference/volume/fast_volume.h"
 #include "studies/image_io.h"
-#include "studies/json_text.h"
 #include "studies/measure.h"
+#include "studies/result_files.h"
 #include "studies/volume_pictures.h"
 #include "traces/output_files.h"
 
@@ -26,6 +26,7 @@ kernels::FastVolumePicture in_single(const kernels::VolumePicture& exact) {
 std::string run_volume(const traces::VolumeScene& scene, Precision precision,
                        const std::filesystem::path& folder, const Progress& progress) {
   const traces::OutputFolder made(folder);
+  ResultFiles files(folder);
   const auto start = HostClock::now();
   kernels::FastVolume volume(scene.splats());
   const double classify_seconds = seconds_since(start);
@@ -41,8 +42,8 @@ std::string run_volume(const traces::VolumeScene& scene, Precision precision,
   const double processor_seconds =
       static_cast<double>(std::clock() - processor_start) / static_cast<double>(CLOCKS_PER_SEC);
   const Image image = picture_of(picture, scene.background);
-  write_png(image, folder / "frame.png");
-  write_exr(image, folder / "frame.exr");
+  write_png(image, files.place("frame.png"));
+  write_exr(image, files.place("frame.exr"));
   const glm::ivec3 size = scene.volume.size;
   const nlohmann::ordered_json results = {{"volume", {{"size", {size.x, size.y, size.z}}, {"empty", empty}}},
                                           {"splats", splats},
@@ -52,7 +53,7 @@ std::string run_volume(const traces::VolumeScene& scene, Precision precision,
                                            {{"classify_seconds", classify_seconds},
                                             {"frame_seconds", frame_seconds},
                                             {"frame_processor_seconds", processor_seconds}}}};
-  traces::write_file(folder / "results.json", json_text(results, 2) + "\n");
+  files.commit(results, 2);
   return fmt::format(
       "{}: {} x {} x {} voxels, {} of them empty\n"
       "{} splats in {} sheets, {} left out\n"

@@ -93,16 +93,16 @@ TEST_F(NamedFiles, OfAVolume) {
   expect_refused({"record", "grid.toml", "-o", "p.nhdr"}, "by -o and by the scene (p.nhdr)");
   expect_refused({"record", "grid.toml", "-o", "p.raw"}, "p.raw: is named by -o and by the header (p.raw)");
   expect_refused({"record", "grid.toml", "-o", "frame.exr"}, "by -o and by the header (frame.exr)");
-  expect_refused({"volume", "grid.toml", "--out", "."}, "by a result in --out and by the header (frame.exr)");
+  expect_refused({"volume", "grid.toml", "--out", "."}, "by the header and by a result in --out (./frame.exr)");
 }
 
 TEST_F(NamedFiles, OfIrregularSamples) {
   folder_.file("set.toml", "[volume]\nsamples = \"results.json\"\n");
   folder_.file("results.json", points("property float value\nproperty float radius\nproperty float w\n"));
   expect_refused({"run", "set.toml", "--out", "."}, "by the scene and by a result in --out");
-  expect_refused({"volume", "set.toml", "--out", "."}, "by a result in --out and by the scene");
+  expect_refused({"volume", "set.toml", "--out", "."}, "by the scene and by a result in --out");
   expect_refused({"sweep", "set.toml", "--sweep", "vertex.units=1,2", "--out", "."},
-                 "results.json: is named by a result in --out and by the scene");
+                 "results.json: is named by the scene and by a result in --out");
 }
 
 }  // namespace

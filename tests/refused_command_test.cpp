@@ -120,9 +120,9 @@ TEST(CommandLine, FilesOfOneNameAreRefused) {
   const std::string results = text_of(folder.path() / "results.json");
   expect_refused(
       run_program({"sweep", "results.json", "--sweep", "vertex.units=1,2", "--out", "."}, folder.path()),
-      "by a result in --out and by INPUT");
+      "by INPUT and by a result in --out");
   expect_refused(run_program({"volume", "results.json", "--out", "."}, folder.path()),
-                 "by a result in --out and by SCENE");
+                 "by SCENE and by a result in --out");
   EXPECT_EQ(text_of(folder.path() / "results.json"), results);
 }
 

@@ -184,6 +184,31 @@ TEST(CommandLine, ARunThatFailsLeavesTheFolderAsItWas) {
   }
 }
 
+// Whatever command wrote into a folder, the next one takes it over.
+TEST(CommandLine, EveryCommandListsItsFilesAndRemovesAnEarlierOnes) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  folder.file("volume.toml", "[volume]\nvoxels = [4, 4, 4]\n[frame]\nwidth = 16\nheight = 16\n");
+  std::filesystem::create_directory(folder.path() / "o");
+  folder.file("o/own.png", "the user's");
+  const std::vector<std::vector<std::string>> commands{
+      {"run", "small.toml", "--out", "o"},
+      {"sweep", "small.toml", "--fidelity", "throughput", "--sweep", "vertex.units=1,2", "--out", "o"},
+      {"volume", "volume.toml", "--out", "o"},
+      {"reproduce", "fig8", "--out", "o"}};
+  for (std::size_t i = 0; i < 2 * commands.size(); ++i) {
+    const auto& command = commands[i % commands.size()];
+    const Outcome outcome = run_program(command, folder.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    const auto results = nlohmann::json::parse(text_of(folder.path() / "o/results.json"));
+    std::vector<std::string> listed = results["files"], found;
+    listed.emplace_back("own.png");
+    std::ranges::sort(listed);
+    for (const auto& [name, text] : texts_in(folder.path() / "o")) found.push_back(name);
+    EXPECT_EQ(listed, found) << command[0];
+  }
+}
+
 TEST(CommandLine, AReferenceThatCoversNothingIsSaidToBeNone) {
   const ScratchFolder folder;
   folder.file("away.toml",
