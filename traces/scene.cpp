@@ -6,6 +6,7 @@
 
 #include "model/error.h"
 #include "traces/gamma.h"
+#include "traces/models/mesh_file.h"
 #include "traces/scene_settings.h"
 #include "traces/surfels.h"
 
@@ -40,6 +41,9 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   if (scene.splatting.faces == Faces::automatic) scene.splatting.faces = plane ? Faces::both : Faces::front;
   if (scene.hierarchy.culling == Culling::automatic)
     scene.hierarchy.culling = plane ? Culling::none : Culling::blocks;
+  const SurfelSource& source = settings.surfels;
+  if (!source.file.empty() && !is_mesh_file(file.parent_path() / source.file))
+    check_points(settings, file.string());
   Surfels surfels = make_surfels(settings, file.parent_path(), progress);
   scene.surfels = std::move(surfels.surfels);
   scene.skipped = surfels.skipped;

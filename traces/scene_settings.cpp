@@ -14,6 +14,9 @@
 namespace splatscope::traces {
 namespace {
 
+// What surfels are made from.
+constexpr unsigned kFromPlane = 1, kFromModel = 2, kFromPoints = 4;
+
 // Stores the value of one key; false where its type or range is wrong.
 struct Store {
   SceneSettings& settings;
@@ -170,6 +173,61 @@ void check_capture(const SceneSettings& settings, std::string_view file) {
                     "capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
 }
 
+std::string_view it_or_them(const std::vector<std::string_view>& keys) {
+  return keys.size() > 1 ? "them" : "it";
+}
+
+// Keys that the plane, a mesh or a model, or points have no use for. A key at its default asks for nothing.
+// `sources`: what the surfels may come from; a file's kind is known only when it is looked at.
+void check_source(const SceneSettings& settings, std::string_view file, unsigned sources) {
+  const SurfelSource &asked = settings.surfels, usual = default_settings().surfels;
+  struct Use {
+    unsigned sources;
+    std::string_view without, expected;
+  };
+  constexpr Use kPlane{kFromPlane, "the plane", "generator = \"plane\" and no file"},
+      kSampled{kFromModel, "a mesh or a model", "a file with faces or another generator than the plane"},
+      kMade{kFromModel | kFromPoints, "a file or a model", "a file or another generator than the plane"};
+  const std::tuple<std::string_view, const Use&, bool> keys[] = {
+      {"surfels.columns", kPlane, asked.columns != usual.columns},
+      {"surfels.rows", kPlane, asked.rows != usual.rows},
+      {"surfels.checker_square", kPlane, asked.checker_square != usual.checker_square},
+      {"surfels.checker_light", kPlane, asked.checker_light != usual.checker_light},
+      {"surfels.checker_dark", kPlane, asked.checker_dark != usual.checker_dark},
+      {"surfels.count", kSampled, asked.count != usual.count},
+      {"surfels.pattern", kSampled, asked.pattern != usual.pattern},
+      {"surfels.pattern_scale", kSampled, asked.pattern_scale != usual.pattern_scale},
+      {"surfels.shading", kSampled, asked.shading != usual.shading},
+      {"surfels.mirror", kMade, asked.mirror != usual.mirror},
+      {"surfels.neighbours", kMade, asked.neighbours != usual.neighbours}};
+  for (const Use* use : {&kPlane, &kSampled, &kMade}) {
+    if ((use->sources & sources) != 0) continue;
+    std::vector<std::string_view> useless;
+    for (const auto& [key, of, changed] : keys)
+      if (changed && &of == use) useless.push_back(key);
+    if (useless.empty()) continue;
+    throw UserError(file, settings.line_of({useless[0]}),
+                    fmt::format("{} without {}, expected {} removed, or surfels with {}",
+                                fmt::join(useless, ", "), use->without, it_or_them(useless), use->expected));
+  }
+}
+
+// What can be told of the surfels without looking at their file.
+void check_surfels(const SceneSettings& settings, std::string_view file) {
+  const SurfelSource& asked = settings.surfels;
+  if (!asked.file.empty() && asked.generator != default_settings().surfels.generator)
+    throw UserError(file, settings.line_of({"surfels.generator"}),
+                    "surfels.generator beside surfels.file, expected one of them");
+  const unsigned by_generator = is_plane(asked) ? kFromPlane : kFromModel;
+  check_source(settings, file, asked.file.empty() ? by_generator : kFromModel | kFromPoints);
+  if (asked.pattern_scale != default_settings().surfels.pattern_scale &&
+      (asked.pattern == Pattern::own || asked.pattern == Pattern::plain))
+    throw UserError(
+        file, settings.line_of({"surfels.pattern_scale"}),
+        "surfels.pattern_scale without squares, stripes or spots, expected it removed, or another "
+        "surfels.pattern");
+}
+
 // What would have nothing to act on. A key at its default asks for nothing.
 void check_hierarchy(const SceneSettings& settings, std::string_view file) {
   const Hierarchy &asked = settings.hierarchy, usual = default_settings().hierarchy;
@@ -189,7 +247,7 @@ void check_hierarchy(const SceneSettings& settings, std::string_view file) {
         file, settings.line_of({changed_keys[0]}),
         fmt::format("{} without a hierarchy, expected {} removed, or hierarchy.culling = \"off\" (every "
                     "block) or \"blocks\"{}",
-                    fmt::join(changed_keys, ", "), changed_keys.size() > 1 ? "them" : "it",
+                    fmt::join(changed_keys, ", "), it_or_them(changed_keys),
                     asked.culling == Culling::none ? "" : ", as the plane has none by default"));
   }
   if (dense && !asked.levels)
@@ -255,6 +313,10 @@ std::vector<NamedFile> files_named(const SceneSettings& settings, const std::fil
   return files;
 }
 
+void check_points(const SceneSettings& settings, std::string_view file) {
+  check_source(settings, file, kFromPoints);
+}
+
 void check_camera(const SceneSettings& settings, std::string_view file) {
   const Camera& c = settings.camera;
   if (!(c.near < c.far)) refuse_planes(settings, file);
@@ -284,6 +346,7 @@ SceneSettings parse_settings(std::string_view text, std::string_view file) {
     read_table(settings, name.str(), *node.as_table(), file);
   }
   settings.camera_given = keys_given(settings);
+  check_surfels(settings, file);
   check_capture(settings, file);
   check_refine(settings, file);
   check_hierarchy(settings, file);

@@ -218,6 +218,44 @@ TEST(Scene, KeysOfTheHierarchyHaveSomethingToActOn) {
   EXPECT_EQ(error_of(plane + "level = \"finest\"\nprogressive = false\n"), "no error");
 }
 
+TEST(Scene, KeysOfSurfelsHaveSomethingToActOn) {
+  for (const std::string key : {"columns = 4", "rows = 4", "checker_square = 2", "checker_light = [1, 0, 0]",
+                                "checker_dark = [1, 0, 0]"}) {
+    EXPECT_EQ(error_of("[surfels]\n" + key + "\n"), "no error");
+    for (const char* other : {"generator = \"sphere\"\ncount = 20\n", "file = \"none.ply\"\n"})
+      EXPECT_EQ(error_of("[surfels]\n" + key + "\n" + other),
+                fmt::format("s.toml:2: surfels.{} without the plane, expected it removed, or surfels with "
+                            "generator = \"plane\" and no file",
+                            key.substr(0, key.find(' '))));
+  }
+  for (const std::string key :
+       {"count = 30", "pattern = \"checker\"", "pattern_scale = 0.5", "shading = 0.5"}) {
+    EXPECT_EQ(error_of("[surfels]\n\n" + key + "\n"),
+              fmt::format("s.toml:3: surfels.{} without a mesh or a model, expected it removed, or surfels "
+                          "with a file with faces or another generator than the plane",
+                          key.substr(0, key.find(' '))));
+  }
+  for (const std::string key : {"mirror = true", "neighbours = 9"})
+    EXPECT_EQ(error_of("[surfels]\n" + key + "\n"),
+              fmt::format("s.toml:2: surfels.{} without a file or a model, expected it removed, or surfels "
+                          "with a file or another generator than the plane",
+                          key.substr(0, key.find(' '))));
+  const std::string sphere = "[surfels]\ngenerator = \"sphere\"\ncount = 20\n";
+  EXPECT_EQ(error_of(sphere + "pattern = \"zebra\"\npattern_scale = 0.5\nshading = 0\nmirror = true\n"),
+            "no error");
+  EXPECT_EQ(error_of(sphere + "columns = 256\n"), "no error") << "its default";
+  EXPECT_EQ(
+      error_of(sphere + "columns = 4\nrows = 4\n"),
+      "s.toml:4: surfels.columns, surfels.rows without the plane, expected them removed, or surfels with "
+      "generator = \"plane\" and no file");
+  for (const std::string pattern : {"", "pattern = \"plain\"\n"})
+    EXPECT_EQ(error_of(sphere + "pattern_scale = 0.5\n" + pattern),
+              "s.toml:4: surfels.pattern_scale without squares, stripes or spots, expected it removed, or "
+              "another surfels.pattern");
+  EXPECT_EQ(error_of("[surfels]\nfile = \"none.ply\"\ngenerator = \"sphere\"\n"),
+            "s.toml:3: surfels.generator beside surfels.file, expected one of them");
+}
+
 // Planes that a scene leaves open are put where its surfels begin and end.
 TEST(Scene, APlaneIsNotBeyondWhatIsSeen) {
   const auto error = [](std::string_view camera) {

@@ -47,6 +47,26 @@ class MeshFileTest : public testing::Test {
 
 constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
+// Whether a file holds points is known when it is looked at.
+TEST_F(MeshFileTest, PointsHaveNoUseForKeysOfAMesh) {
+  constexpr std::string_view kPoints =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n";
+  EXPECT_EQ(scene_of("points.ply", kPoints, "mirror = true\nneighbours = 4\n").surfels.size(), 2u);
+  for (const std::string_view key : {"count = 3", "pattern = \"checker\"", "shading = 0"}) {
+    try {
+      scene_of("points.ply", kPoints, key);
+      ADD_FAILURE() << key;
+    } catch (const UserError& error) {
+      EXPECT_EQ(
+          std::string(error.what()),
+          fmt::format("{}:3: surfels.{} without a mesh or a model, expected it removed, or surfels with "
+                      "a file with faces or another generator than the plane",
+                      (folder_ / "s.toml").string(), key.substr(0, key.find(' '))));
+    }
+  }
+}
+
 TEST_F(MeshFileTest, PolygonsBecomeSurfels) {
   const Scene scene = scene_of("square.obj", kSquare);
   EXPECT_EQ(scene.surfels.size(), 50u);
@@ -96,7 +116,7 @@ TEST_F(MeshFileTest, APlyWithFacesIsAMeshAndOneWithoutIsPoints) {
       "count = 50\nshading = 0\n");
   ASSERT_EQ(mesh.surfels.size(), 50u);
   EXPECT_EQ(mesh.surfels[0].color, glm::vec3(1, 0, 0)) << "the vertices' colour";
-  const Scene points = scene_of("p.ply", fmt::format("{}end_header\n{}", head, vertices));
+  const Scene points = scene_of("p.ply", fmt::format("{}end_header\n{}", head, vertices), "");
   EXPECT_EQ(points.surfels.size(), 3u);
   EXPECT_EQ(points.mesh.triangles, 0u);
 }
