@@ -68,6 +68,9 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
       "  triangles dropped: {} outside the frustum, {} before the near plane, {} back-facing, {} not "
       "finite\n",
       c.triangles_outside, c.triangles_behind, c.triangles_back_facing, c.triangles_not_finite);
+  if (c.fragments == 0)
+    std::cout << "  warning: no triangle covers a pixel, so nothing is drawn and the picture is what it was "
+                 "cleared to\n";
   if (!run.timing) return;
   const std::size_t frames = run.timing->frame_cycles.size();
   const double plus_minus = run.timing->cycles_plus_minus;

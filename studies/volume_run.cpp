@@ -21,6 +21,16 @@ kernels::FastVolumePicture in_single(const kernels::VolumePicture& exact) {
   return picture;
 }
 
+// Why there is nothing to see, where no splat is drawn.
+std::string warning_of_none(std::size_t drawn, std::size_t left_out) {
+  if (drawn > 0) return "";
+  return fmt::format("warning: no splat is drawn, so the picture is its background: {}\n",
+                     left_out > 0
+                         ? "each is before the near plane, outside of the picture, or without a finite "
+                           "footprint"
+                         : "no voxel has any opacity");
+}
+
 }  // namespace
 
 std::string run_volume(const traces::VolumeScene& scene, Precision precision,
@@ -57,11 +67,13 @@ std::string run_volume(const traces::VolumeScene& scene, Precision precision,
   return fmt::format(
       "{}: {} x {} x {} voxels, {} of them empty\n"
       "{} splats in {} sheets, {} left out\n"
+      "{}"
       "{} x {} pixels: {:.2f} s a frame, {:.2f} s of processor time; {:.2f} s before it to classify the "
       "voxels\n"
       "{}\n",
-      scene.name, size.x, size.y, size.z, empty, splats, picture.sheets, picture.left_out, picture.width,
-      picture.height, frame_seconds, processor_seconds, classify_seconds, (folder / "frame.png").string());
+      scene.name, size.x, size.y, size.z, empty, splats, picture.sheets, picture.left_out,
+      warning_of_none(splats, picture.left_out), picture.width, picture.height, frame_seconds,
+      processor_seconds, classify_seconds, (folder / "frame.png").string());
 }
 
 }  // namespace splatscope::studies

@@ -219,6 +219,11 @@ TEST(CommandLine, AReferenceThatCoversNothingIsSaidToBeNone) {
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_NE(outcome.out.find("  against the reference: no pixel is covered\n"), std::string::npos)
       << outcome.out;
+  EXPECT_NE(
+      outcome.out.find("  warning: no triangle covers a pixel, so nothing is drawn and the picture is what "
+                       "it was cleared to\n"),
+      std::string::npos)
+      << outcome.out;
   const std::string report = text_of(folder.path() / "o/report.html");
   EXPECT_NE(report.find("no pixel is covered"), std::string::npos);
   EXPECT_EQ(report.find("nan dB"), std::string::npos);

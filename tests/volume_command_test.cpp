@@ -57,6 +57,26 @@ TEST(VolumeCommand, CountsWhatIsDrawnAsRunDoes) {
   }
 }
 
+TEST(VolumeCommand, SaysWhereNothingIsDrawnAndWhy) {
+  const ScratchFolder folder;
+  const std::string volume = "[frame]\nwidth = 8\nheight = 8\n[volume]\nvoxels = [4, 4, 4]\n";
+  folder.file("away.toml", volume + "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 18]\n");
+  folder.file("clear.toml", volume + "transfer = [{ value = 0, opacity = 0, color = [1, 1, 1] }]\n");
+  folder.file("seen.toml", volume);
+  const auto said = [&](const char* scene) {
+    const Outcome outcome = run_program({"volume", scene, "--out", "o"}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return outcome.out;
+  };
+  const std::string start = "warning: no splat is drawn, so the picture is its background: ";
+  EXPECT_NE(said("away.toml")
+                .find(start + "each is before the near plane, outside of the picture, or without "
+                              "a finite footprint\n"),
+            std::string::npos);
+  EXPECT_NE(said("clear.toml").find(start + "no voxel has any opacity\n"), std::string::npos);
+  EXPECT_EQ(said("seen.toml").find("warning"), std::string::npos);
+}
+
 TEST(VolumeCommand, RefusesWhatIsNoVolume) {
   const ScratchFolder folder;
   folder.file("plane.toml", "[surfels]\n");
