@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/machine_options.h"
 #include "app/progress_bar.h"
 #include "model/error.h"
 #include "studies/own_program.h"
@@ -129,8 +130,7 @@ void expect_used(const Options& options, studies::Fidelity fidelity) {
 
 void run(const Options& options, bool quiet) {
   expect_apart(options, {});
-  Machine machine = machine::load(options.machine);
-  for (const std::string& assignment : options.settings) machine::assign(machine, assignment);
+  const Machine machine = machine_of(options.machine, options.settings);
   machine::check(machine);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   expect_used(options, fidelity);

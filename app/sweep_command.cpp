@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/machine_options.h"
 #include "app/progress_bar.h"
 #include "studies/result_files.h"
 #include "studies/run_files.h"
@@ -39,8 +40,7 @@ void print(const studies::Sweep& sweep) {
 
 void run(const Options& options, bool quiet) {
   studies::expect_apart_from_results({{"INPUT", options.input}, {"--machine", options.machine}}, options.out);
-  Machine machine = machine::load(options.machine);
-  for (const std::string& assignment : options.settings) machine::assign(machine, assignment);
+  const Machine machine = machine_of(options.machine, options.settings);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   const auto swept = studies::swept_parameters(options.swept, options.settings);
   std::optional<traces::OutputFolder> folder;

@@ -77,6 +77,16 @@ TEST_F(Arguments, NoneIsEmpty) {
                  "--program: \"splat_ewa.vs=\", expected NAME=FILE");
 }
 
+TEST_F(Arguments, AParameterIsSetOnce) {
+  const std::vector<std::string> twice{"--set", "vertex.units=1", "--set", "memory.channels=2",
+                                       "--set", "vertex.units=2"};
+  for (std::vector<std::string> arguments : {std::vector<std::string>{"run", "s.toml", "--out", "o"},
+                                             {"sweep", "s.toml", "--out", "o", "--sweep", "setup.queue=1"}}) {
+    arguments.insert(arguments.end(), twice.begin(), twice.end());
+    expect_refused(arguments, "--set: vertex.units is given twice, expected one value");
+  }
+}
+
 // As without the equals sign.
 TEST_F(Arguments, AReferenceIsAffineWhereNothingFollowsIt) {
   for (const char* option : {"--reference", "--reference="}) {
