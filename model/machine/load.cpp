@@ -104,9 +104,9 @@ void assign(Machine& machine, const Parameter& parameter, const toml::node& valu
 const Parameter& require(std::string_view name, const Place& place) {
   if (const Parameter* parameter = find(name)) return *parameter;
   const std::string group(name.substr(0, name.find('.')));
-  const std::string keys = known_keys(group);
-  place.fail(keys.empty() ? fmt::format("unknown key {}, expected a group of {}", name, known_keys(""))
-                          : fmt::format("unknown key {}, expected one of {}", name, keys));
+  const std::string keys = group.empty() ? "" : known_keys(group);
+  place.fail(keys.empty() ? fmt::format("unknown key \"{}\", expected a group of {}", name, known_keys(""))
+                          : fmt::format("unknown key \"{}\", expected one of {}", name, keys));
 }
 
 // Of a value for which a file says nothing else.
@@ -120,7 +120,7 @@ Machine::Origin read_origin(const toml::table& table, std::string_view name, std
     if (key == "value") continue;
     const Place place = place_of(node, file);
     if (key != "confidence" && key != "source" && key != "fitted_to") {
-      place.fail(fmt::format("unknown key {} of {}, expected value, confidence, source or fitted_to",
+      place.fail(fmt::format("unknown key \"{}\" of {}, expected value, confidence, source or fitted_to",
                              key.str(), name));
     }
     if (!node.is_string())
@@ -267,7 +267,7 @@ Machine parse(std::string_view text, std::string_view file) {
     const toml::table* group = node.as_table();
     if (!group || known_keys(key.str()).empty()) {
       place_of(node, file)
-          .fail(fmt::format("unknown key {}, expected title, base or a group of {}", key.str(),
+          .fail(fmt::format("unknown key \"{}\", expected title, base or a group of {}", key.str(),
                             known_keys("")));
     }
     for (const auto& [name, value] : *group) {

@@ -72,8 +72,9 @@ TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
             "m.toml:3: vertex.units is out of range (99), expected an integer, 1 to 16");
   EXPECT_EQ(message_of("[vertex]\nunits = { value = 2.5 }\n"),
             "m.toml:2: vertex.units has the wrong type, expected an integer, 1 to 16");
-  EXPECT_EQ(message_of("[agp]\nlanes = 2\n"),
-            "m.toml:2: unknown key agp.lanes, expected one of bytes_per_clock, latency_nanoseconds, queue");
+  EXPECT_EQ(
+      message_of("[agp]\nlanes = 2\n"),
+      "m.toml:2: unknown key \"agp.lanes\", expected one of bytes_per_clock, latency_nanoseconds, queue");
   EXPECT_EQ(message_of("[numbers]\n\nframe = \"rgb\"\n"),
             "m.toml:3: numbers.frame is \"rgb\", expected a string, unorm8 or float32 or unorm10 or "
             "unorm16 or half");
@@ -85,7 +86,7 @@ TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
   EXPECT_EQ(message_of("title = \"a\"\n[memory]\nchannels = 3\n"),
             "m.toml: memory.channels is 3, expected a power of two");
   EXPECT_TRUE(message_of("[shader]\nunits = 2\n")
-                  .starts_with("m.toml:1: unknown key shader, expected title, base or"));
+                  .starts_with("m.toml:1: unknown key \"shader\", expected title, base or"));
   EXPECT_TRUE(message_of("title = \"a\"\n[vertex\n").starts_with("m.toml:2: "));
   EXPECT_EQ(message_of("base = \"voodoo\"\n"),
             "m.toml:1: no machine \"voodoo\", expected geforce4-ti4400 or radeon-8500");
@@ -152,7 +153,8 @@ TEST(Machine, SetRefusesWhatAFileMayNotHold) {
   EXPECT_EQ(set_message("vertex.units=2\n[clock]\ncore_megahertz=1"),
             "--set: the value of vertex.units has more than one line, expected an integer, 1 to 16");
   EXPECT_EQ(set_message("agp.units=2"),
-            "--set: unknown key agp.units, expected one of bytes_per_clock, latency_nanoseconds, queue");
+            "--set: unknown key \"agp.units\", expected one of bytes_per_clock, latency_nanoseconds, queue");
+  EXPECT_TRUE(set_message("=3").starts_with("--set: unknown key \"\", expected a group of "));
   EXPECT_EQ(set_message("texture.line_bytes=128"),
             "--set: texture.line_bytes is 128, expected at most memory.interleave_bytes (64)");
 }
