@@ -171,7 +171,7 @@ void run(const Options& options, bool quiet) {
         studies::compare(result.rendered.frame, input.trace, machine, *reference);
     result.reference = {std::move(*reference), comparison};
   }
-  const std::vector<std::string> observed = observers.commit();
+  const std::vector<std::string> observed = observers.commit(result.timing ? result.timing->cycles : 0);
   studies::write_run(input, machine, fidelity, result, files);
   print(input, machine, result);
   if (result.reference) print(result.reference->comparison);

@@ -59,7 +59,8 @@ T& RunObservers::add(const std::string& path, Arguments&&... arguments) {
   return observer;
 }
 
-RunObservers::RunObservers(const ObserveOptions& options, const Trace& trace) {
+RunObservers::RunObservers(const ObserveOptions& options, const Trace& trace)
+    : timeline_window_(options.timeline_window), pipeline_window_(options.pipeline_window) {
   if (!options.timeline.empty()) {
     const CycleWindow window = options.timeline_window;
     timeline_ = &add<sim::Timeline>(options.timeline, trace,
@@ -75,7 +76,7 @@ RunObservers::RunObservers(const ObserveOptions& options, const Trace& trace) {
 
 RunObservers::~RunObservers() = default;
 
-std::vector<std::string> RunObservers::commit() {
+std::vector<std::string> RunObservers::commit(sim::Cycle cycles) {
   std::vector<std::string> said;
   for (const auto& file : files_) {
     file->out.close();
@@ -83,13 +84,18 @@ std::vector<std::string> RunObservers::commit() {
     file->file.commit();
     said.push_back(file->name);
   }
-  const auto say_where = [&](const auto* log, const char* what, const char* option) {
+  const auto say_where = [&](const auto* log, const CycleWindow& window, const char* what,
+                             const char* option) {
+    if (log && window.first >= cycles)
+      said.push_back(
+          fmt::format("warning: the {} is empty: the run ended at cycle {}, before the first of {}", what,
+                      cycles, option));
     if (!log || log->cut_at() == sim::kNever) return;
     said.push_back(fmt::format("the {} is cut short at cycle {}: {} chooses what it shows", what,
                                log->cut_at(), option));
   };
-  say_where(timeline_, "timeline", "--timeline-window");
-  say_where(pipeline_, "pipeline log", "--pipeline-window");
+  say_where(timeline_, timeline_window_, "timeline", "--timeline-window");
+  say_where(pipeline_, pipeline_window_, "pipeline log", "--pipeline-window");
   return said;
 }
 

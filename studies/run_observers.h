@@ -39,15 +39,16 @@ class RunObservers {
   ~RunObservers();
 
   std::span<sim::Observer* const> observers() const { return observers_; }
-  // After the run: the files take their places. Throws std::runtime_error where not all could be written.
-  // Returns lines that say what was written.
-  std::vector<std::string> commit();
+  // After the run of so many cycles: the files take their places. Throws std::runtime_error where not all
+  // could be written. Returns lines that say what was written.
+  std::vector<std::string> commit(sim::Cycle cycles);
 
  private:
   struct File;
   template <class T, class... Arguments>
   T& add(const std::string& path, Arguments&&... arguments);
 
+  CycleWindow timeline_window_, pipeline_window_;
   std::vector<std::unique_ptr<File>> files_;
   std::vector<sim::Observer*> observers_;
   const sim::Timeline* timeline_ = nullptr;

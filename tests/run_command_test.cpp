@@ -83,6 +83,29 @@ TEST(CommandLine, RunWritesATimelineAndCounters) {
   expect_refused(run_program(run, folder.path()), "--fidelity");
 }
 
+TEST(CommandLine, AWindowAfterTheRunIsSaidToShowNothing) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const auto said = [&](const std::string& window) {
+    const Outcome outcome =
+        run_program({"run", "small.toml", "--out", "a", "--timeline", "t.json", "--pipeline", "p.kanata",
+                     "--timeline-window", window, "--pipeline-window", window},
+                    folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return outcome.out;
+  };
+  const std::string none = said("999999999:9999999999");
+  const auto cycles = nlohmann::json::parse(text_of(folder.path() / "a/results.json"))["frames"][0]["cycles"];
+  for (const auto& [what, option] :
+       {std::pair{"timeline", "--timeline-window"}, {"pipeline log", "--pipeline-window"}})
+    EXPECT_NE(none.find(fmt::format(
+                  "  warning: the {} is empty: the run ended at cycle {}, before the first of {}\n", what,
+                  cycles.get<std::uint64_t>(), option)),
+              std::string::npos)
+        << none;
+  EXPECT_EQ(said("10:9999999999").find("warning"), std::string::npos);
+}
+
 // The folder for the results is made first, and goes again where the run fails.
 TEST(CommandLine, ATimelineMayLieInANewFolder) {
   const ScratchFolder folder;
