@@ -87,6 +87,14 @@ TEST(ShaderBatch, ACaseThatIsWrongIsAnErrorOfLine0) {
             R"({"id":"t","error":"0: a token is \"123456789\", expected 32 bits in hex"})");
   EXPECT_EQ(run(R"({"id": [1], "program": "vs_1_1\nmov oPos, v0"})"),
             R"({"id":null,"error":"0: \"id\" is neither text nor a number"})");
+  for (const std::string key : {"texcoords", "textures", "bump"})
+    EXPECT_EQ(run(program + '"' + key + "\": {}}"),
+              R"({"id":"a","error":"0: unknown key \")" + key +
+                  R"(\" for a vertex program, expected it with a pixel program alone"})");
+  EXPECT_EQ(run(program + R"("id": "b"})"),
+            R"({"id":null,"error":"0: the key \"id\" stands twice in an object, expected it once"})");
+  EXPECT_EQ(run(program + R"("inputs": {"v1": ["0", "0", "0", "0"], "v1": ["0", "0", "0", "0"]}})"),
+            R"({"id":null,"error":"0: the key \"v1\" stands twice in an object, expected it once"})");
 }
 
 TEST(ShaderBatch, MessagesQuoteLittle) {

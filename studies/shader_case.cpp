@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "model/error.h"
 #include "model/isa/tokens.h"
@@ -29,12 +32,20 @@ std::string quote_of(std::string_view text) {
 }  // namespace
 
 ordered_json parse_case(std::string_view text, std::string_view file, int line) {
-  const auto limit_depth = [&](int depth, ordered_json::parse_event_t, ordered_json&) {
+  using Event = ordered_json::parse_event_t;
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  const auto check = [&](int depth, Event event, ordered_json& parsed) {
     if (depth > kDepth)
       throw UserError(file, line, fmt::format("this is nested deeper than {}, expected a case", kDepth));
+    if (event == Event::object_start) keys.emplace_back();
+    if (event == Event::object_end) keys.pop_back();
+    if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second)
+      throw UserError(file, line,
+                      fmt::format("the key {} stands twice in an object, expected it once",
+                                  quote_of(parsed.get_ref<const std::string&>())));
     return true;
   };
-  ordered_json object = ordered_json::parse(text, limit_depth, false);
+  ordered_json object = ordered_json::parse(text, check, false);
   if (!object.is_object()) throw UserError(file, line, "this is no JSON object, expected a case");
   return object;
 }
@@ -127,6 +138,11 @@ std::vector<Vec4> ShaderCase::constants() const {
 }
 
 std::unique_ptr<vertex::InputBatch> ShaderCase::vertex_inputs() const {
+  for (const char* key : {"texcoords", "textures", "bump"}) {
+    if (case_.contains(key))
+      fail(fmt::format("unknown key \"{}\" for a vertex program, expected it with a pixel program alone",
+                       key));
+  }
   auto in = std::make_unique<vertex::InputBatch>();
   const auto set = [&](std::size_t i, const Vec4& value) {
     for (std::size_t c = 0; c < 4; ++c) std::fill_n(in->v[i][c], vertex::kBatch, value[c]);
