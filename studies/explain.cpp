@@ -265,6 +265,8 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
     }
     if (step.target == 0) out += fmt::format("    depth {:.7f}\n", step.depth);
   }
+  if (std::ranges::find(steps, PixelStep::Kind::triangle, &PixelStep::kind) == steps.end())
+    out += "no triangle covers the pixel\n";
   return out;
 }
 

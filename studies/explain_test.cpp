@@ -40,6 +40,15 @@ TEST(Explain, StepsEndInTheFrame) {
   }
 }
 
+TEST(Explain, SaysWhereNoTriangleCoversThePixel) {
+  const Trace trace = small_trace("ewa-per-surfel");
+  const auto text_of = [&](std::uint32_t x, std::uint32_t y) {
+    return describe(trace, NumberFormats{}, explain_pixel(trace, {}, x, y));
+  };
+  EXPECT_TRUE(text_of(0, 0).ends_with("\nno triangle covers the pixel\n")) << text_of(0, 0);
+  EXPECT_EQ(text_of(32, 24).find("no triangle"), std::string::npos);
+}
+
 // Per surfel: out = source * source alpha + before, in double exactly, in 8 bits rounded once.
 TEST(Explain, EachStepAddsItsSource) {
   const Trace trace = small_trace("ewa-per-surfel");
