@@ -4,169 +4,17 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 
 #include "model/error.h"
 #include "model/stop.h"
 #include "traces/output_files.h"
 #include "traces/ply_header.h"
+#include "traces/ply_values.h"
 
 namespace splatscope::traces {
 namespace {
-
-// The values after the header, one at a time. In ASCII those of each vertex, or other thing, are a line.
-class PlyValues {
- public:
-  virtual ~PlyValues() = default;
-  virtual void begin_row(const PlyElement&) {}
-  virtual double next(PlyType type) = 0;
-  virtual void end_row() {}
-  // Says where the reader is and throws.
-  [[noreturn]] virtual void fail(std::string_view what, std::string_view expected) const = 0;
-};
-
-class AsciiValues : public PlyValues {
- public:
-  AsciiValues(std::istream& in, std::string_view file, int line)
-      : in_(*in.rdbuf()), file_(file), line_(line + 1) {}
-
-  // Lines without a word are passed over.
-  void begin_row(const PlyElement& element) override {
-    element_ = &element;
-    read_ = 0;
-    if (!skip_blank_lines()) fail("the file ends within its data", "a number");
-  }
-
-  // The type is not enforced: an ASCII file's numbers are what they are.
-  double next(PlyType) override {
-    const std::string_view word = next_word();
-    const std::string_view digits = word.front() == '+' ? word.substr(1) : word;
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size())
-      fail(fmt::format("\"{}\" is no number", word), "a number");
-    ++read_;
-    return value;
-  }
-
-  void end_row() override {
-    const std::size_t expected = read_;
-    for (; !at_line_end(); ++read_)
-      for (int c = in_.sgetc(); c != kEnd && !is_space(c) && c != '\n'; c = in_.snextc()) stop_if_asked();
-    if (read_ != expected) fail(numbers(read_), fmt::format("{}", expected));
-  }
-
-  // Nothing but blank lines may follow.
-  void end() {
-    if (skip_blank_lines()) fail("a line more than the header counts", "the end of the file");
-  }
-
-  [[noreturn]] void fail(std::string_view what, std::string_view expected) const override {
-    throw UserError(file_, line_, fmt::format("{}, expected {}", what, expected));
-  }
-
- private:
-  static constexpr int kEnd = std::char_traits<char>::eof();
-
-  static bool is_space(int c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-  static std::string numbers(std::size_t count) {
-    return fmt::format("{} number{}", count, count == 1 ? "" : "s");
-  }
-
-  bool at_line_end() {
-    int c = in_.sgetc();
-    while (is_space(c)) c = in_.snextc();
-    return c == '\n' || c == kEnd;
-  }
-
-  // False at the end of the file.
-  bool skip_blank_lines() {
-    while (at_line_end()) {
-      stop_if_asked();
-      if (in_.sbumpc() == kEnd) return false;
-      ++line_;
-    }
-    return true;
-  }
-
-  std::string_view next_word() {
-    if (at_line_end()) {
-      const bool has_list = std::ranges::any_of(element_->properties, &PlyProperty::is_list);
-      fail(numbers(read_), has_list ? "more" : fmt::format("{}", element_->properties.size()));
-    }
-    std::size_t size = 0;
-    for (int c = in_.sgetc(); c != kEnd && c != '\n' && !is_space(c); c = in_.snextc()) {
-      if (size == sizeof word_) fail("a word does not end", "a number");
-      word_[size++] = static_cast<char>(c);
-    }
-    return {word_, size};
-  }
-
-  std::streambuf& in_;
-  std::string_view file_;
-  int line_;
-  const PlyElement* element_ = nullptr;  // of the row
-  std::size_t read_ = 0;                 // numbers of the row
-  char word_[64];
-};
-
-template <class Value>
-double decode(const unsigned char* bytes) {
-  Value value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
-}
-
-class BinaryValues : public PlyValues {
- public:
-  BinaryValues(std::istream& in, std::string_view file, bool big_endian)
-      : in_(*in.rdbuf()),
-        file_(file),
-        offset_(in.tellg()),
-        swap_(big_endian != (std::endian::native == std::endian::big)) {}
-
-  double next(PlyType type) override {
-    unsigned char bytes[8];
-    const auto size = static_cast<std::streamsize>(size_in_bytes(type));
-    if (in_.sgetn(reinterpret_cast<char*>(bytes), size) != size)
-      fail("the file ends within its data", fmt::format("a value of {} bytes", size));
-    offset_ += size;
-    if (swap_) std::reverse(bytes, bytes + size);
-    switch (type) {
-      case PlyType::int8:
-        return decode<std::int8_t>(bytes);
-      case PlyType::uint8:
-        return decode<std::uint8_t>(bytes);
-      case PlyType::int16:
-        return decode<std::int16_t>(bytes);
-      case PlyType::uint16:
-        return decode<std::uint16_t>(bytes);
-      case PlyType::int32:
-        return decode<std::int32_t>(bytes);
-      case PlyType::uint32:
-        return decode<std::uint32_t>(bytes);
-      case PlyType::float32:
-        return decode<float>(bytes);
-      case PlyType::float64:
-        return decode<double>(bytes);
-    }
-    throw ModelError("BinaryValues: no such type");
-  }
-
-  [[noreturn]] void fail(std::string_view what, std::string_view expected) const override {
-    throw UserError(file_, 0, fmt::format("{} at byte {}, expected {}", what, offset_, expected));
-  }
-
- private:
-  std::streambuf& in_;
-  std::string_view file_;
-  std::streamoff offset_;
-  bool swap_;
-};
 
 // Where a property's value goes; nullptr: passed over.
 float* place(Surfel& s, float& value, std::string_view name) {
@@ -187,26 +35,6 @@ double full_scale(const PlyProperty& property) {
   const bool is_color = property.name == "red" || property.name == "green" || property.name == "blue";
   if (!is_color || !is_integer(property.type)) return 1;
   return property.type == PlyType::uint16 ? 65535 : 255;
-}
-
-void skip_list(PlyValues& values, const PlyProperty& property) {
-  const double count = values.next(property.count_type);
-  if (!(count >= 0 && count <= 4294967295.0))
-    values.fail(fmt::format("a list of {} items", count), "0 or more");
-  for (auto left = static_cast<std::uint64_t>(count); left > 0; --left) {
-    stop_if_asked();
-    values.next(property.type);
-  }
-}
-
-void skip_element(PlyValues& values, const PlyElement& element) {
-  if (element.properties.empty()) return;
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    values.begin_row(element);
-    for (const PlyProperty& property : element.properties)
-      property.is_list ? skip_list(values, property) : static_cast<void>(values.next(property.type));
-    values.end_row();
-  }
 }
 
 // One pass over the properties of a surfel, decided once for all of them.
@@ -301,6 +129,15 @@ bool ply_has_faces(const std::filesystem::path& path) {
   return faces;
 }
 
+void expect_whole_ply(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  std::ifstream in = open(path);
+  const PlyHeader header = read_ply_header(in, file);
+  const auto values = ply_values(in, file, std::filesystem::file_size(path), header);
+  for (const PlyElement& element : header.elements) skip_element(*values, element);
+  values->end();
+}
+
 void write_ply(std::span<const Surfel> surfels, const std::filesystem::path& path) {
   static_assert(std::endian::native == std::endian::little && sizeof(float) == 4);
   std::string bytes =
@@ -338,19 +175,14 @@ PointFile read_ply(const std::filesystem::path& path) {
   if (vertex->count > kMostSurfels)
     throw UserError(file, 0, fmt::format("{} vertices, expected at most {}", vertex->count, kMostSurfels));
   const bool has_values = has_group(*vertex, {"value"}, file);
-  const auto read_to_vertices = [&](PlyValues& values) {
-    for (auto element = header.elements.begin(); element != vertex; ++element) skip_element(values, *element);
-    read_surfels(values, *vertex, has_values, points);
-  };
-  if (header.encoding != PlyEncoding::ascii) {
-    BinaryValues values(in, file, header.encoding == PlyEncoding::binary_big_endian);
-    read_to_vertices(values);
-    return points;
+  const auto values = ply_values(in, file, file_size, header);
+  for (const PlyElement& element : header.elements) {
+    if (&element == &*vertex)
+      read_surfels(*values, element, has_values, points);
+    else
+      skip_element(*values, element);
   }
-  AsciiValues values(in, file, header.lines);
-  read_to_vertices(values);
-  for (auto element = vertex + 1; element != header.elements.end(); ++element) skip_element(values, *element);
-  values.end();
+  values->end();
   return points;
 }
 

@@ -32,6 +32,10 @@ PointFile read_ply(const std::filesystem::path& path);
 // wrong or counts more than the file can hold.
 bool ply_has_faces(const std::filesystem::path& path);
 
+// Reads over all that follows the header of a PLY file, of points or a mesh, and throws UserError as read_ply
+// does where that is not what the header says.
+void expect_whole_ply(const std::filesystem::path& path);
+
 // Writes what read_ply reads, as a binary file: position, normal, radius, and color in 8 bits. Whole or not
 // at all (output_files.h).
 void write_ply(std::span<const Surfel> surfels, const std::filesystem::path& path);

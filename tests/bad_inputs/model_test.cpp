@@ -118,6 +118,14 @@ std::string little_endian(std::uint32_t value) {
   return bytes;
 }
 
+// Of three vertices.
+std::string ascii_mesh(int faces, std::string_view data) {
+  return fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face {}\nproperty list int int vertex_indices\nend_header\n{}",
+      faces, data);
+}
+
 TEST(BadInputs, MeshesThatAreNone) {
   BadInputs inputs;
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -158,10 +166,11 @@ TEST(BadInputs, MeshesThatAreNone) {
        "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
        "property float y\nproperty float z\nelement face 4000000000\n"
        "property list uchar int vertex_indices\nend_header\n"},
-      {"faces.ply",
-       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
-       "3 0 1 77\n"},
+      {"faces.ply", ascii_mesh(1, "0 0 0\n1 0 0\n0 1 0\n3 0 1 77\n")},
+      {"missing_faces.ply", ascii_mesh(2, "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")},
+      {"missing_number.ply", ascii_mesh(1, "0 0 0\n1 0\n0 1 0\n3 0 1 2\n")},
+      {"minus_3_corners.ply", ascii_mesh(1, "0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n")},
+      {"many_corners.ply", ascii_mesh(1, "0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n")},
       {"mesh.xyz", "0 0 0\n"},
       {"mesh", triangle + "f 1 2 3\n"},
   };
@@ -191,12 +200,14 @@ TEST(BadInputs, MeshesCutShort) {
     off += face;
     ply += face;
   }
-  for (const auto& [name, text] :
-       {std::pair{"cut.obj", obj}, std::pair{"cut.off", off}, std::pair{"cut.ply", ply}}) {
+  for (const auto& [name, text] : {std::pair{"cut.obj", obj}, std::pair{"cut.off", off}}) {
     inputs.cut(name, text, [&, name = name](const std::string& what) {
       inputs.refused_or_used(what, {"sample", name, "-n", "10", "-o", "s.ply"});
     });
   }
+  inputs.cut("cut.ply", ply, [&](const std::string& what) {
+    inputs.refused(what, {"sample", "cut.ply", "-n", "10", "-o", "s.ply"});
+  });
   EXPECT_GE(inputs.count(), 10);
 }
 

@@ -214,9 +214,11 @@ MeshFile read_whole(const std::filesystem::path& path) {
   const bool regular = std::filesystem::is_regular_file(path, error);
   if (!regular || !std::ifstream(path)) throw UserError(file, 0, "cannot be read, expected a mesh");
   if (ending_of(path) == ".off") check_off_size(path, std::filesystem::file_size(path));
-  if (ending_of(path) == ".ply" &&
-      !ply_has_faces(path))  // its header is right, too: assimp's reader hangs on some
-    throw UserError(file, 0, "holds no faces, expected a mesh");
+  if (ending_of(path) ==
+      ".ply") {  // whose reader in assimp hangs on some headers and fills up what is missing
+    if (!ply_has_faces(path)) throw UserError(file, 0, "holds no faces, expected a mesh");
+    expect_whole_ply(path);
+  }
   std::vector<std::filesystem::path> files;
   Assimp::Importer importer;
   importer.SetIOHandler(new AssimpFiles(files));  // the importer's to delete

@@ -221,6 +221,55 @@ TEST_F(MeshFileTest, WhatIsNoMeshIsTheUsersError) {
   EXPECT_THROW(read_mesh(folder_), UserError);
 }
 
+std::string ply_mesh(std::string_view format, std::string_view faces, std::string_view data) {
+  return fmt::format(
+      "ply\nformat {} 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face {}\nproperty list int int vertex_indices\nend_header\n{}",
+      format, faces, data);
+}
+
+TEST_F(MeshFileTest, AnAsciiPlyIsWhatItsHeaderSays) {
+  const auto error = [&](std::string_view faces, std::string_view data) {
+    return error_of("x.ply", ply_mesh("ascii", faces, data)).substr(folder_.string().size() + 1);
+  };
+  EXPECT_EQ(scene_of("x.ply", ply_mesh("ascii", "1", "0 0 0\n1 0 0\n0 1 0\n\n3 0 1 2\n")).mesh.triangles, 1u);
+  EXPECT_EQ(error("3", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+            "x.ply:14: the file ends within its data, expected a number");
+  EXPECT_EQ(error("1", "0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), "x.ply:11: 2 numbers, expected 3");
+  EXPECT_EQ(error("1", "0 0 0\n1 0 0 7\n0 1 0\n3 0 1 2\n"), "x.ply:11: 4 numbers, expected 3");
+  EXPECT_EQ(error("1", "0 0 0\n1 0 0\n0 1.0.0 0\n3 0 1 2\n"),
+            "x.ply:12: \"1.0.0\" is no number, expected a number");
+  EXPECT_EQ(error("1", "0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), "x.ply:13: 3 numbers, expected more");
+  EXPECT_EQ(error("1", "0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n"),
+            "x.ply:13: a list of -3 items, expected 0 or more");
+  EXPECT_EQ(error("1", "0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n"), "x.ply:13: 4 numbers, expected more");
+  EXPECT_EQ(error("1", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n"),
+            "x.ply:14: a line more than the header counts, expected the end of the file");
+}
+
+TEST_F(MeshFileTest, ABinaryPlyIsWhatItsHeaderSays) {
+  const auto with_list_of = [](int count) {
+    std::string data;
+    const auto add = [&](auto value) { data.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    for (const float number : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) add(number);
+    for (const int number : {count, 0, 1, 2}) add(number);
+    return ply_mesh("binary_little_endian", "1", data);
+  };
+  const std::string whole = with_list_of(3);
+  EXPECT_EQ(scene_of("x.ply", whole).mesh.triangles, 1u);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_NE(error_of("x.ply", whole.substr(0, size)), "no error") << size << " bytes of " << whole.size();
+  const auto error = [&](int count) {
+    return error_of("x.ply", with_list_of(count)).substr(folder_.string().size() + 1);
+  };
+  EXPECT_EQ(error(-3),
+            fmt::format("x.ply: a list of -3 items at byte {}, expected 0 or more", whole.size() - 12));
+  for (const int count : {4, 2000000000})
+    EXPECT_EQ(error(count),
+              fmt::format("x.ply: the file ends within its data at byte {}, expected {} values of 4 bytes",
+                          whole.size() - 12, count));
+}
+
 // Every beginning of a good file: an error or a picture of what there is, never a crash.
 TEST_F(MeshFileTest, TruncatedFilesAreHarmless) {
   const std::string_view off = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
