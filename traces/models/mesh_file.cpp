@@ -12,36 +12,12 @@
 #include "model/error.h"
 #include "model/run_apart.h"
 #include "traces/models/assimp_files.h"
+#include "traces/models/off_check.h"
 #include "traces/models/texture_image.h"
 #include "traces/point_file.h"
 
 namespace splatscope::traces {
 namespace {
-
-// An OFF file says how much is in it; assimp takes memory for that before it looks.
-void check_off_size(const std::filesystem::path& path, std::uintmax_t file_size) {
-  std::ifstream in(path);
-  const auto next_word = [&] {
-    std::string word;
-    for (char c = 0; word.size() < 64 && in.get(c);) {
-      if (c == '#') in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-      const bool space = c == '#' || std::isspace(static_cast<unsigned char>(c)) != 0;
-      if (space && !word.empty()) break;
-      if (!space) word += c;
-    }
-    return word;
-  };
-  next_word();  // OFF, COFF, ...
-  for (const char* what : {"vertices", "faces"}) {
-    const std::string word = next_word();
-    char* end = nullptr;
-    const double count = std::strtod(word.c_str(), &end);
-    if (word.empty() || *end != '\0' || !(count >= 0 && 2 * count <= static_cast<double>(file_size)))
-      throw UserError(path.string(), 0,
-                      fmt::format("\"{}\" {} do not fit in its {} bytes, expected a whole OFF file", word,
-                                  what, file_size));
-  }
-}
 
 // What colours the parts of a mesh file, by the number of their material.
 struct Materials {
@@ -213,7 +189,7 @@ MeshFile read_whole(const std::filesystem::path& path) {
   std::error_code error;
   const bool regular = std::filesystem::is_regular_file(path, error);
   if (!regular || !std::ifstream(path)) throw UserError(file, 0, "cannot be read, expected a mesh");
-  if (ending_of(path) == ".off") check_off_size(path, std::filesystem::file_size(path));
+  if (ending_of(path) == ".off") expect_whole_off(path);
   if (ending_of(path) ==
       ".ply") {  // whose reader in assimp hangs on some headers and fills up what is missing
     if (!ply_has_faces(path)) throw UserError(file, 0, "holds no faces, expected a mesh");

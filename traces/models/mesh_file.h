@@ -19,9 +19,9 @@ struct MeshFile {
 bool is_mesh_file(const std::filesystem::path& path);
 
 // Any format of assimp, told by the file's ending. Textures are found beside the mesh. Throws UserError:
-// missing, unknown format, broken, a PLY file that is not what its header says, more than kMostTriangles, no
-// triangles. Memory is bounded by a multiple of the file's size as far as the format's reader keeps to that;
-// counts that a PLY or OFF file cannot hold are refused.
+// missing, unknown format, broken, a PLY or OFF file that is not what its header says, more than
+// kMostTriangles, no triangles. Memory is bounded by a multiple of the file's size as far as the format's
+// reader keeps to that; counts that a PLY or OFF file cannot hold are refused.
 MeshFile read_mesh(const std::filesystem::path& path);
 
 inline constexpr std::size_t kMostTriangles = 64'000'000;

@@ -270,6 +270,37 @@ TEST_F(MeshFileTest, ABinaryPlyIsWhatItsHeaderSays) {
                           whole.size() - 12, count));
 }
 
+TEST_F(MeshFileTest, AnOffFileIsWhatItsHeaderSays) {
+  const std::string rows = "0 0 0\n1 0 0\n\n0 1 0 # a corner\n3 0 1 2\n";
+  for (const char* header : {"OFF\n3 1 0\n", "OFF 3 1 0\n# made by hand\n\n", "3 1 0\n", "nOFF 3\n3 1 0\n"})
+    EXPECT_EQ(scene_of("x.off", header + rows + "\n# the end\n").mesh.triangles, 1u) << header;
+  EXPECT_EQ(
+      scene_of("x.off", "COFF\r\n3 1 0\r\n0 0 0 255 0 0 1\r\n1 0 0 9 9 9 9\r\n0 1 0 9 9 9 9\r\n3 0 1 2\r\n")
+          .mesh.triangles,
+      1u);
+  const auto error = [&](std::string_view text) {
+    return error_of("x.off", text).substr(folder_.string().size() + 1);
+  };
+  EXPECT_EQ(error("OFF\n3 2 0\n" + rows),
+            "x.off:7: the file ends within its data, expected a line of numbers");
+  EXPECT_EQ(error("OFF\n3 0 0\n" + rows),
+            "x.off:7: a line more than the header counts, expected the end of the file");
+  EXPECT_EQ(error("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), "x.off:4: 2 numbers, expected 3 or more");
+  EXPECT_EQ(error("NOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "x.off:3: 3 numbers, expected 6 or more");
+  EXPECT_EQ(error("OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n"),
+            "x.off:4: \"x\" is no number, expected a number");
+  const std::string vertices = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(error(vertices + "3 0 1"), "x.off:7: 3 numbers, expected 4 or more");
+  EXPECT_EQ(error(vertices + "3 0 -1 2"), "x.off:7: \"-1\" is no vertex, expected a whole number from 0 on");
+  EXPECT_EQ(error(vertices + "10 0 1 2 0 1 2 0 1 2 0"),
+            "x.off:7: a face of \"10\" corners, expected 1 to 9, as assimp does");
+  for (const char* line : {" \n", "# the last\n"})
+    EXPECT_EQ(error(vertices + line + "3 0 2 1\n"),
+              "x.off:7: blanks or a comment between the rows, expected a line of numbers");
+  EXPECT_EQ(error("off\n3 1 0\n" + rows), "x.off:1: the first word is not \"OFF\", expected an OFF file");
+  EXPECT_EQ(error("nOFF 4\n3 1 0\n" + rows), "x.off:1: a wrong number of dimensions, expected 1 to 3");
+}
+
 // Every beginning of a good file: an error or a picture of what there is, never a crash.
 TEST_F(MeshFileTest, TruncatedFilesAreHarmless) {
   const std::string_view off = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
