@@ -144,6 +144,8 @@ TEST(BadInputs, MeshesThatAreNone) {
       {"points.obj", triangle},
       {"beyond.obj", triangle + "f 1 2 900\n"},
       {"nan.obj", "v nan nan nan\nv nan nan nan\nv nan nan nan\nf 1 2 3\n"},
+      {"missing_number.obj", triangle + "v 1 1\nf 1 2 3\n"},
+      {"word.obj", triangle + "v 1 one 1\nf 1 2 3\n"},
       {"flat.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n"},
       {"huge.off", "OFF\n4000000000 4000000000 0\n0 0 0\n"},
       {"negative.off", "OFF\n-3 -1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},

@@ -1,8 +1,11 @@
 #include "traces/models/assimp_files.h"
 
+#include <assimp/MemoryIOWrapper.h>
+
 #include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <cctype>
+#include <cstdint>
 #include <memory>
 #include <string_view>
 
@@ -44,6 +47,8 @@ std::string ending_of(const std::filesystem::path& path) {
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
   files_.emplace_back(file);
+  if (!text_.empty() && file == mesh_)
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
   std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
   if (!stream || !may_be_marked(file)) return stream.release();
   char start[kByteOrderMark.size()];

@@ -12,16 +12,19 @@ namespace splatscope::traces {
 std::string ending_of(const std::filesystem::path& path);
 
 // How assimp reads files here: .obj, .mtl and .ply without the byte order mark that some editors put before a
-// text, which its readers of these stumble over (in a binary file the same bytes are data); and each is noted
-// in `files`, also where it cannot be opened.
+// text, which its readers of these stumble over (in a binary file the same bytes are data); `mesh` as `text`,
+// where that is not empty; and each is noted in `files`, also where it cannot be opened.
 class AssimpFiles : public Assimp::DefaultIOSystem {
  public:
-  explicit AssimpFiles(std::vector<std::filesystem::path>& files) : files_(files) {}
+  AssimpFiles(std::vector<std::filesystem::path>& files, std::filesystem::path mesh, std::string text)
+      : files_(files), mesh_(std::move(mesh)), text_(std::move(text)) {}
 
   Assimp::IOStream* Open(const char* file, const char* mode) override;
 
  private:
   std::vector<std::filesystem::path>& files_;
+  std::filesystem::path mesh_;
+  std::string text_;
 };
 
 }  // namespace splatscope::traces

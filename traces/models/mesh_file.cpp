@@ -12,6 +12,7 @@
 #include "model/error.h"
 #include "model/run_apart.h"
 #include "traces/models/assimp_files.h"
+#include "traces/models/obj_text.h"
 #include "traces/models/off_check.h"
 #include "traces/models/texture_image.h"
 #include "traces/point_file.h"
@@ -195,9 +196,11 @@ MeshFile read_whole(const std::filesystem::path& path) {
     if (!ply_has_faces(path)) throw UserError(file, 0, "holds no faces, expected a mesh");
     expect_whole_ply(path);
   }
+  std::string text;
+  if (ending_of(path) == ".obj") text = obj_text(path);
   std::vector<std::filesystem::path> files;
   Assimp::Importer importer;
-  importer.SetIOHandler(new AssimpFiles(files));  // the importer's to delete
+  importer.SetIOHandler(new AssimpFiles(files, path, std::move(text)));  // the importer's to delete
   if (!importer.IsExtensionSupported(ending_of(path)))
     throw UserError(file, 0,
                     "has no ending that assimp knows, expected a mesh such as .ply, .obj, .off or .stl");

@@ -301,6 +301,40 @@ TEST_F(MeshFileTest, AnOffFileIsWhatItsHeaderSays) {
   EXPECT_EQ(error("nOFF 4\n3 1 0\n" + rows), "x.off:1: a wrong number of dimensions, expected 1 to 3");
 }
 
+// assimp's reader drops a vertex with such a number, and later indices are of the next one.
+TEST_F(MeshFileTest, NumbersOfAnObjFileMayBeginWithAPoint) {
+  const auto largest = [&](std::string_view text) {
+    glm::vec3 corner(-1e9f);
+    for (const Surfel& s : scene_of("x.obj", text).surfels) corner = glm::max(corner, s.position);
+    return corner;
+  };
+  const std::string faces = "v 0 1 0\nv 5 5 5\nf 1 3 4\n";
+  const glm::vec3 expected = largest("v 0 0 0\nv 9 0.5 0\nv 1 0 0\n" + faces);
+  EXPECT_LE(expected.z, 1);
+  for (const char* number : {".5", "+.5", "-.5", "nan", "inf", "\\\n.5", "\\\r\n.5"})
+    EXPECT_EQ(largest(fmt::format("v 0 0 0\n  v 9 {} 0 # .5\nv 1 0 0\n{}", number, faces)), expected)
+        << number;
+  EXPECT_EQ(largest("\xEF\xBB\xBFv .0 .0 .0 .5\r\nv\t9 .5 .0\r\nv 1 .0 .0 .1 .2 .3\r\n" + faces), expected);
+  EXPECT_EQ(largest("v 0 0 0\rv 9 .5 0\rv 1 0 0\r" + faces), expected);
+  EXPECT_EQ(largest("v 0 0 0\nv 2 .5 0\nv 2 0 0\nvt .1 .2\nvn .0 0 1\nf 1/1/1 2/1/1 3/1/1\n"),
+            largest("v 0 0 0\nv 2 0.5 0\nv 2 0 0\nf 1 2 3\n"));
+  EXPECT_EQ(
+      scene_of("x.obj", "v 0 0 0\nv 1 nan 0\nv 1 0 0\nv 0 1 0\nf 1 3 4\nf 1 2 4\n").mesh.triangles_not_finite,
+      1u);
+}
+
+TEST_F(MeshFileTest, AVertexOfAnObjFileHasItsNumbers) {
+  const auto error = [&](std::string_view vertex) {
+    return error_of("x.obj", fmt::format("v 0 0 0\n{}\n{}", vertex, kSquare))
+        .substr(folder_.string().size() + 1);
+  };
+  EXPECT_EQ(error("v 9 1"), "x.obj:2: a vertex of 2 numbers, expected 3, 4 or 6");
+  EXPECT_EQ(error("v 1 \\\n2"), "x.obj:3: a vertex of 2 numbers, expected 3, 4 or 6");
+  EXPECT_EQ(error("v 1 1 1 1 1 1 1"), "x.obj:2: a vertex of 7 numbers, expected 3, 4 or 6");
+  EXPECT_EQ(error("v 1 one 1"), "x.obj:2: \"one\" is no number, expected a number");
+  EXPECT_EQ(error("vt . 1"), "x.obj:2: \".\" is no number, expected a number");
+}
+
 // Every beginning of a good file: an error or a picture of what there is, never a crash.
 TEST_F(MeshFileTest, TruncatedFilesAreHarmless) {
   const std::string_view off = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
