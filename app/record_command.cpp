@@ -39,7 +39,7 @@ void record(const Options& options, bool quiet) {
   recording.clear();
   traces::write_trace(input.trace, options.out);
   std::cout << (input.volume ? fmt::format("{}: {}\n", options.out, traces::describe(*input.volume))
-                             : fmt::format("{}: {} surfels, {}\n", options.out, input.recorded->surfels,
+                             : fmt::format("{}: {} surfels, {}\n", options.out, input.recorded->scene_surfels,
                                            traces::describe(input.skipped, input.estimated)));
 }
 

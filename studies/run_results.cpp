@@ -136,7 +136,8 @@ Json blocks_json(const traces::BlockCounts& blocks) {
 
 Json surfels_json(const traces::RecordCounts& recorded, const traces::SkipCounts& skipped,
                   const traces::EstimateCounts& estimated) {
-  return {{"drawn", recorded.surfels},
+  return {{"total", recorded.scene_surfels},
+          {"drawn", recorded.surfels},
           {"normals_estimated", estimated.normals},
           {"radii_estimated", estimated.radii},
           {"blocks", blocks_json(recorded.blocks)},

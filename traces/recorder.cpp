@@ -48,7 +48,7 @@ struct Blocks {
 };
 
 void record_all(const Scene& scene, std::span<const VertexWeights> weights, Recording& out) {
-  out.counts.surfels = scene.surfels.size();
+  out.counts.scene_surfels = out.counts.surfels = scene.surfels.size();
   out.trace = splat_trace({scene.surfels, weights, scene.splatting.gamma}, view_of(scene.camera, scene.frame),
                           scene.splatting, pass_of(scene.splatting));
 }
@@ -57,6 +57,7 @@ void record_blocks(const Scene& scene, const Blocks& blocks, Recording& out) {
   out.trace = block_trace(blocks.tree, blocks.frames, blocks.weights, blocks.gammas,
                           view_of(scene.camera, scene.frame), scene.splatting, pass_of(scene.splatting));
   out.counts.blocks = blocks.frames.back().counts;
+  out.counts.scene_surfels = scene.surfels.size();
   out.counts.surfels = out.counts.blocks.surfels;
 }
 

@@ -13,6 +13,7 @@ namespace splatscope::traces {
 
 // Host-side facts of a recording that a run reports beside its counters.
 struct RecordCounts {
+  std::size_t scene_surfels = 0;        // of the scene
   std::size_t surfels = 0;              // drawn, in the last frame
   BlockCounts blocks;                   // of the last frame
   std::size_t weights_captured = 0;     // surfels seen from at least one view of the capture

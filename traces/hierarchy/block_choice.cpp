@@ -82,8 +82,9 @@ class Walk {
 }  // namespace
 
 std::string describe(const BlockCounts& counts) {
-  std::string text = fmt::format("{} blocks drawn; culled: {} surfels outside the frustum, {} facing away",
-                                 counts.blocks, counts.outside_frustum, counts.facing_away);
+  std::string text =
+      fmt::format("{} surfels in {} blocks drawn; culled: {} surfels outside the frustum, {} facing away",
+                  counts.surfels, counts.blocks, counts.outside_frustum, counts.facing_away);
   if (!counts.surfels_by_level.empty() && counts.surfels_by_level.front() != counts.surfels)
     text += fmt::format("; by level, the finest first: {}", fmt::join(counts.surfels_by_level, ", "));
   return text;
