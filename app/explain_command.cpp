@@ -1,11 +1,15 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/commands.h"
+#include "app/machine_options.h"
 #include "app/progress_bar.h"
 #include "model/error.h"
 #include "studies/explain.h"
+#include "studies/own_program.h"
 #include "studies/run.h"
 
 namespace splatscope::app {
@@ -14,6 +18,7 @@ namespace {
 struct Options {
   std::string input;
   std::string machine = "geforce4-ti4400";
+  std::vector<std::string> settings, programs;
   std::string pixel, vertex;
 };
 
@@ -35,14 +40,16 @@ void explain(const Options& options, bool quiet) {
   if (!options.pixel.empty()) pixel = two_numbers(options.pixel, "--pixel", "X,Y, a pixel from the top left");
   if (!options.vertex.empty())
     vertex = two_numbers(options.vertex, "--vertex", "D,I, a draw and an index, both from 0");
-  const Machine machine = machine::load(options.machine);
+  const Machine machine = machine_of(options.machine, options.settings);
+  machine::check(machine);
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.input, loading.callback());
   loading.clear();
   ProgressBar recording("recording", quiet);
-  const studies::Input input =
-      studies::make_input(std::move(opened), options.input, machine, recording.callback());
+  studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
+  for (const std::string& line : studies::replace_programs(input.trace, options.programs))
+    std::cout << line << '\n';
   if (!options.pixel.empty()) {
     ProgressBar drawing("drawing", quiet);
     const auto steps =
@@ -63,6 +70,8 @@ void add_explain_command(CLI::App& app, Invocation& invocation) {
       ->required();
   command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
       ->capture_default_str();
+  command->add_option("--set", options->settings, "KEY=VALUE, as in run")->allow_extra_args(false);
+  command->add_option("--program", options->programs, "NAME=FILE, as in run")->allow_extra_args(false);
   auto* what = command->add_option_group("what");
   what->add_option(
       "--pixel", options->pixel,

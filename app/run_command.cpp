@@ -54,7 +54,7 @@ void print_weights(const traces::RecordCounts& counts) {
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
   std::cout << fmt::format("{} on {}\n", input.name, machine.title);
   if (input.recorded)
-    std::cout << fmt::format("  {} surfels, {}\n", input.recorded->surfels,
+    std::cout << fmt::format("  {} surfels, {}\n", input.recorded->scene_surfels,
                              traces::describe(input.skipped, input.estimated));
   if (input.recorded && !input.recorded->blocks.surfels_by_level.empty())
     std::cout << fmt::format("  {}\n", traces::describe(input.recorded->blocks));
@@ -76,7 +76,7 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
   const std::size_t frames = run.timing->frame_cycles.size();
   const double plus_minus = run.timing->cycles_plus_minus;
   std::cout << fmt::format("  {}{}{} cycles, {:.2f} ms, {:.1f} frames a second\n",
-                           frames == 1 ? "" : fmt::format("{} frames, ", frames), run.timing->cycles,
+                           frames == 1 ? "" : fmt::format("{} frames together: ", frames), run.timing->cycles,
                            plus_minus > 0 ? fmt::format(" +- {:.0f}", plus_minus) : "",
                            1000 * run.timing->seconds, run.timing->frames_per_second());
   for (const auto& unit : run.timing->units_left_out)
@@ -151,7 +151,7 @@ void run(const Options& options, bool quiet) {
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   libraries.wait();
   recording.clear();
-  studies::replace_programs(input.trace, options.programs);
+  const std::vector<std::string> replaced = studies::replace_programs(input.trace, options.programs);
   if (fidelity == studies::Fidelity::sampled || simulates_cycles(fidelity))
     sim::expect_countable_time(input.trace, machine);
   studies::RunObservers observers(options.observe, input.trace);
@@ -174,8 +174,10 @@ void run(const Options& options, bool quiet) {
   const std::vector<std::string> observed = observers.commit(result.timing ? result.timing->cycles : 0);
   studies::write_run(input, machine, fidelity, result, files);
   print(input, machine, result);
+  for (const std::string& line : replaced) std::cout << "  " << line << '\n';
   if (result.reference) print(result.reference->comparison);
-  std::cout << fmt::format("  frame.png, frame.exr, depth.exr, results.json and report.html in {}\n",
+  std::cout << fmt::format("  frame.png, frame.exr, depth.exr, {}results.json and report.html in {}\n",
+                           result.reference ? "reference.exr, reference.png, difference.png, " : "",
                            options.out);
   for (const std::string& line : observed) std::cout << "  " << line << '\n';
 }

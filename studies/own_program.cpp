@@ -37,18 +37,32 @@ Replacement replacement_of(const Trace& trace, const std::string& assignment) {
   return {static_cast<std::size_t>(found - trace.programs.begin()), assignment.substr(equals + 1)};
 }
 
-// Valid by itself. Tokens become text, which is what a trace holds.
-std::string valid_text(const std::string& file) {
+std::string_view kind_of(const isa::Program& program) {
+  return program.version.kind == isa::ShaderKind::vertex ? "vertex" : "pixel";
+}
+
+// Puts the program of `file` into the place of `replaced`; tokens become text, which is what a trace holds.
+// Returns what it did.
+std::string replace(ShaderText& replaced, const std::string& file) {
+  const isa::Program before = isa::load(replaced.text, replaced.name);
   std::string content = read_text_file(file, "a program as text or tokens");
   const auto bytes = std::as_bytes(std::span(content));
   const isa::Program program = shader_of_bytes(bytes, file);
+  if (program.version.kind != before.version.kind) {
+    throw UserError(file, 0,
+                    fmt::format("a {} program, expected a {} program in the place of {}", kind_of(program),
+                                kind_of(before), replaced.name));
+  }
   isa::validate(program);
-  return isa::looks_like_tokens(bytes) ? isa::disassemble(program) : content;
+  std::string said = fmt::format("program {} replaced by {} ({} slots, was {})", replaced.name, file,
+                                 isa::slot_count(program), isa::slot_count(before));
+  replaced = {file, isa::looks_like_tokens(bytes) ? isa::disassemble(program) : content};
+  return said;
 }
 
 }  // namespace
 
-void replace_programs(Trace& trace, const std::vector<std::string>& assignments) {
+std::vector<std::string> replace_programs(Trace& trace, const std::vector<std::string>& assignments) {
   std::vector<Replacement> replacements;
   for (const std::string& assignment : assignments) {
     const Replacement next = replacement_of(trace, assignment);
@@ -59,10 +73,12 @@ void replace_programs(Trace& trace, const std::vector<std::string>& assignments)
     }
     replacements.push_back(next);
   }
+  std::vector<std::string> said;
   for (const auto& [place, file] : replacements) {
-    trace.programs[place] = {file, valid_text(file)};
+    said.push_back(replace(trace.programs[place], file));
     traces::check_trace(trace, file);
   }
+  return said;
 }
 
 }  // namespace splatscope::studies

@@ -29,7 +29,8 @@ TEST(OwnProgram, TakesThePlaceOfTheRecordedOne) {
   const Frame before = render(trace, {}).frame;
   // Draws nothing: every vertex in one place.
   const std::string file = written("own.vs", "vs_1_1\nmov oPos, c0\nmov oD0, v0\nmov oT0, v0\n");
-  replace_programs(trace, {"splat_ewa.vs=" + file});
+  EXPECT_EQ(std::vector<std::string>{"program splat_ewa.vs replaced by " + file + " (3 slots, was 78)"},
+            replace_programs(trace, {"splat_ewa.vs=" + file}));
   EXPECT_EQ(file, trace.programs.back().name == file ? file : trace.programs[1].name);
   EXPECT_NE(before, render(trace, {}).frame);
 }
@@ -75,7 +76,8 @@ TEST(OwnProgram, IsRefusedWhereItIsWrong) {
   const std::string wrong = written("wrong.vs", "vs_1_1\nmov oPos, v99\n");
   EXPECT_EQ(error_of({"splat_ewa.vs=" + wrong}), wrong + ":2:1: v99 does not exist, expected v0 to v15");
   const std::string pixel = written("pixel.ps", "ps_1_1\nmov r0, v0\n");
-  expect_start(error_of({"splat_ewa.vs=" + pixel}), pixel + ": command ");
+  EXPECT_EQ(error_of({"splat_ewa.vs=" + pixel}),
+            pixel + ": a pixel program, expected a vertex program in the place of splat_ewa.vs");
   EXPECT_EQ(error_of({"splat.ps=" + pixel, "splat.ps=" + pixel}),
             "--program: \"splat.ps\" is given twice, expected one file for it");
 }

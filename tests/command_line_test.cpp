@@ -171,6 +171,12 @@ TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
   EXPECT_NE(pixel.out.find("command 0: clear"), std::string::npos);
   const Outcome vertex = run_program({"explain", "small.toml", "--vertex", "0,3"}, folder.path());
   EXPECT_NE(vertex.out.find("end of the program"), std::string::npos) << vertex.error;
+  folder.file("own.vs", "vs_1_1\nmov oPos, v3\n");
+  const Outcome own = run_program({"explain", "small.toml", "--vertex", "0,2", "--program",
+                                   "visibility.vs=own.vs", "--set", "vertex.units=1"},
+                                  folder.path());
+  EXPECT_NE(own.out.find("visibility.vs replaced by own.vs (1 slots, was 13)"), std::string::npos) << own.out;
+  EXPECT_NE(own.out.find("oPos after  = (1, 1, 0, 1)"), std::string::npos) << own.out;
   expect_refused(run_program({"explain", "small.toml", "--pixel", "32"}, folder.path()), "--pixel");
   expect_refused(run_program({"explain", "small.toml", "--pixel", "4000,1"}, folder.path()), "--pixel");
   EXPECT_EQ(run_program({"explain", "small.toml"}, folder.path()).status, 2);
