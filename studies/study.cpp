@@ -118,8 +118,12 @@ void Findings::write(double host_seconds) {
     add_configuration(report_, machine::load(name));
   report_.write(folder_.path() / "report.html");
   traces::write_file(folder_.path() / "results.json", json_text(results_, 1) + "\n");
-  say(fmt::format("{:.1f} s; results.json, report.html and pictures in {}\n", host_seconds,
-                  folder_.path().string()));
+  const bool pictures = std::ranges::any_of(results_["files"], [](const auto& name) {
+    const std::string file = name;
+    return file.ends_with(".png") || file.ends_with(".svg");
+  });
+  say(fmt::format("{:.1f} s; results.json{} in {}\n", host_seconds,
+                  pictures ? ", report.html and pictures" : " and report.html", folder_.path().string()));
 }
 
 std::string names_of(std::span<const Study> studies) {
