@@ -101,6 +101,8 @@ TEST_F(NrrdFile, NamesTheLineOfWhatIsWrong) {
             "a.nrrd:5: 35184372088832 voxels, expected at most 536870912");
   EXPECT_EQ(error_of(header("uint8", "1 1 1", "spacings: 1 nan 1\n")),
             "a.nrrd:9: a spacing of \"nan\", expected a number from 1e-9 to 1e9");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "spacings: -1 1 1\n")),
+            "a.nrrd:9: a spacing of \"-1\", expected a number from 1e-9 to 1e9");
   EXPECT_EQ(error_of(header("uint8", "1 1 1", "sizes: 1 1 1\n")),
             "a.nrrd:9: \"sizes\" for the second time, expected it once, as in line 5");
   EXPECT_EQ(error_of("NRRD0004\ntype: uint8\nencoding: gzip\n"),

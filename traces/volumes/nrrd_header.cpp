@@ -177,10 +177,10 @@ class Reader {
 
   double spacing(std::string_view word) const {
     const auto value = number<double>(word);
-    if (!value || !(std::abs(*value) >= 1e-9 && std::abs(*value) <= 1e9)) {
+    if (!value || !(*value >= 1e-9 && *value <= 1e9)) {
       fail(fmt::format("a spacing of \"{}\"", shown(word)), "a number from 1e-9 to 1e9");
     }
-    return std::abs(*value);
+    return *value;
   }
 
   void read_spacings(std::string_view value) {
