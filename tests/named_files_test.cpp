@@ -93,7 +93,8 @@ TEST_F(NamedFiles, OfAVolume) {
   expect_refused({"record", "grid.toml", "-o", "p.nhdr"}, "by -o and by the scene (p.nhdr)");
   expect_refused({"record", "grid.toml", "-o", "p.raw"}, "p.raw: is named by -o and by the header (p.raw)");
   expect_refused({"record", "grid.toml", "-o", "frame.exr"}, "by -o and by the header (frame.exr)");
-  expect_refused({"volume", "grid.toml", "--out", "."}, "by the header and by a result in --out (./frame.exr)");
+  expect_refused({"volume", "grid.toml", "--out", "."},
+                 "by the header and by a result in --out (./frame.exr)");
 }
 
 TEST_F(NamedFiles, OfIrregularSamples) {
