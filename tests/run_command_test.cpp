@@ -132,14 +132,18 @@ TEST(CommandLine, ASceneMayComeThroughAPipe) {
   EXPECT_EQ(results["surfels"]["drawn"], 16 * 16);
 }
 
+void write_two_frames(const std::filesystem::path& path) {
+  Trace frames;
+  frames.width = frames.height = 4;
+  frames.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}};
+  traces::write_trace(frames, path);
+}
+
 // A folder holds one run: pictures that an earlier one wrote and this one does not go away, and nothing else.
 TEST(CommandLine, ALaterRunTakesTheFolderOver) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
-  Trace frames;
-  frames.width = frames.height = 4;
-  frames.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}};
-  traces::write_trace(frames, folder.path() / "two.trace");
+  write_two_frames(folder.path() / "two.trace");
   const auto names = [&] {
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "o"))
@@ -184,10 +188,7 @@ std::map<std::string, std::string> texts_in(const std::filesystem::path& folder)
 TEST(CommandLine, ARunThatFailsLeavesTheFolderAsItWas) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
-  Trace frames;
-  frames.width = frames.height = 4;
-  frames.commands = {Clear{{1, 0, 0, 1}, 1}, Present{}, Clear{{0, 1, 0, 1}, 1}, Present{}};
-  traces::write_trace(frames, folder.path() / "two.trace");
+  write_two_frames(folder.path() / "two.trace");
   ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
   auto before = texts_in(folder.path() / "o");
   const std::string full_disk =

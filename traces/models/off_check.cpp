@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <optional>
@@ -22,11 +21,7 @@ constexpr std::uint64_t kMostCorners = 9;  // of a face, in assimp
 
 template <class Number>
 std::optional<Number> number(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  Number value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
+  return number_of<Number>(word.starts_with('+') ? word.substr(1) : word);
 }
 
 class OffCheck {

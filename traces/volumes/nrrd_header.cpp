@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <istream>
 #include <map>
@@ -39,15 +38,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   if (begin == text.npos) return {};
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
-// All of the text as one number.
-template <class Number>
-std::optional<Number> number(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 // The header, line by line.
@@ -134,7 +124,7 @@ class Reader {
       }
       header_.data_file = std::string(value);
     } else if (name == "byte skip" || name == "byteskip") {
-      const auto skip = number<std::uint32_t>(value);
+      const auto skip = number_of<std::uint32_t>(value);
       if (!skip)
         fail(fmt::format("byte skip is \"{}\"", shown(value)), "a whole number from 0 to 4294967295");
       header_.skip = *skip;
@@ -163,7 +153,7 @@ class Reader {
     }
     if (words.size() != 3) fail(fmt::format("{} sizes", words.size()), "three");
     for (int axis = 0; axis < 3; ++axis) {
-      const auto size = number<int>(words[static_cast<std::size_t>(axis)]);
+      const auto size = number_of<int>(words[static_cast<std::size_t>(axis)]);
       if (!size || *size < 1 || *size > NrrdHeader::kMostAlong) {
         fail(fmt::format("a size of \"{}\"", shown(words[static_cast<std::size_t>(axis)])),
              fmt::format("a whole number from 1 to {}", NrrdHeader::kMostAlong));
@@ -176,7 +166,7 @@ class Reader {
   }
 
   double spacing(std::string_view word) const {
-    const auto value = number<double>(word);
+    const auto value = number_of<double>(word);
     if (!value || !(*value >= 1e-9 && *value <= 1e9)) {
       fail(fmt::format("a spacing of \"{}\"", shown(word)), "a number from 1e-9 to 1e9");
     }
@@ -199,7 +189,7 @@ class Reader {
       double square = 0;
       for (std::size_t i = 0; i < 3; ++i) {
         const std::string_view word = words[3 * static_cast<std::size_t>(axis) + i];
-        const auto entry = number<double>(word);
+        const auto entry = number_of<double>(word);
         if (!entry || !(std::abs(*entry) <= 1e9))
           fail(fmt::format("\"{}\" in space directions", shown(word)), "a number");
         square += *entry * *entry;
