@@ -10,6 +10,7 @@
 #include "studies/result_files.h"
 #include "studies/run_files.h"
 #include "studies/sweep.h"
+#include "studies/sweep_report.h"
 #include "traces/output_files.h"
 
 namespace splatscope::app {
@@ -19,13 +20,14 @@ struct Options {
   std::string input;
   std::string machine = "geforce4-ti4400";
   std::string fidelity = "cycle";
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, programs;
   std::vector<std::string> swept;
   std::optional<std::string> cache;
   std::string out = "out";
 };
 
 void print(const studies::Sweep& sweep) {
+  for (const std::string& line : sweep.replaced) fmt::print("{}\n", line);
   for (const studies::SweepPoint& point : sweep.points) {
     std::string settings;
     for (const auto& [key, value] : point.settings) settings += fmt::format("{}={}  ", key, value);
@@ -39,7 +41,10 @@ void print(const studies::Sweep& sweep) {
 }
 
 void run(const Options& options, bool quiet) {
-  studies::expect_apart_from_results({{"INPUT", options.input}, {"--machine", options.machine}}, options.out);
+  std::vector<traces::NamedFile> read{{"INPUT", options.input}, {"--machine", options.machine}};
+  for (const std::string& program : options.programs)
+    read.push_back({"--program", program.substr(program.find('=') + 1)});
+  studies::expect_apart_from_results(read, options.out);
   const Machine machine = machine_of(options.machine, options.settings);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   const auto swept = studies::swept_parameters(options.swept, options.settings);
@@ -49,12 +54,16 @@ void run(const Options& options, bool quiet) {
     studies::expect_apart_from_results(studies::files_of(opened), options.out);
     folder.emplace(options.out);
   };
-  const studies::Sweep sweep = studies::run_sweep(options.input, machine, swept, fidelity, options.cache,
-                                                  running.callback(), before_work);
+  const studies::Sweep sweep = studies::run_sweep(
+      options.input, machine, swept, fidelity,
+      {.programs = options.programs, .cache = options.cache, .before_work = before_work}, running.callback());
   running.clear();
-  studies::ResultFiles(folder->path()).commit(studies::results_of(sweep, machine, fidelity));
+  studies::ResultFiles files(folder->path());
+  traces::write_file(files.place("sweep.csv"), studies::csv_of(sweep));
+  studies::report_of(sweep, machine, fidelity).write(files.place("report.html"));
+  files.commit(studies::results_of(sweep, machine, fidelity));
   print(sweep);
-  fmt::print("{:.1f} s; results.json in {}\n", sweep.host_seconds, options.out);
+  fmt::print("{:.1f} s; results.json, sweep.csv and report.html in {}\n", sweep.host_seconds, options.out);
 }
 
 }  // namespace
@@ -76,6 +85,7 @@ void add_sweep_command(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command->add_option("--set", options->settings, "KEY=VALUE: a parameter of all machines")
       ->allow_extra_args(false);
+  command->add_option("--program", options->programs, "NAME=FILE, as in run")->allow_extra_args(false);
   command->add_option("--cache", options->cache,
                       "folder that keeps what the function of a frame gives the timing, for later sweeps");
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kResults = "results.json";
 
 bool is_result(const fs::path& name) {
-  constexpr std::array kKinds{".exr", ".png", ".svg", ".html", ".json"};
+  constexpr std::array kKinds{".exr", ".png", ".svg", ".html", ".json", ".csv"};
   return name == name.filename() && std::ranges::count(kKinds, name.extension()) > 0;
 }
 

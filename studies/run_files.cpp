@@ -12,10 +12,10 @@ namespace fs = std::filesystem;
 namespace {
 
 // Of some run: what it is asked for says which. Pictures of earlier frames have names beyond these.
-constexpr std::string_view kResults[] = {"frame.exr",       "frame.png",         "depth.exr",
-                                         "results.json",    "report.html",       "reference.exr",
-                                         "reference.png",   "difference.png",    "overdraw.exr",
-                                         "depth_fails.exr", "texel_fetches.exr", "cycles_per_tile.exr"};
+constexpr std::string_view kResults[] = {
+    "frame.exr",         "frame.png",           "depth.exr",      "results.json", "report.html",
+    "reference.exr",     "reference.png",       "difference.png", "overdraw.exr", "depth_fails.exr",
+    "texel_fetches.exr", "cycles_per_tile.exr", "sweep.csv"};
 
 // "frame-000.png"
 bool is_earlier_frame(std::string_view name) {

@@ -8,6 +8,7 @@
 #include "model/error.h"
 #include "studies/json_text.h"
 #include "studies/measure.h"
+#include "studies/own_program.h"
 #include "studies/processes.h"
 #include "studies/run_results.h"
 
@@ -128,9 +129,8 @@ std::vector<SweptParameter> swept_parameters(const std::vector<std::string>& tex
 }
 
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
-                const std::vector<SweptParameter>& parameters, Fidelity fidelity,
-                const std::optional<std::filesystem::path>& cache_folder, const Progress& progress,
-                const std::function<void(const Opened&)>& before_work) {
+                const std::vector<SweptParameter>& parameters, Fidelity fidelity, const SweepOptions& options,
+                const Progress& progress) {
   const auto start = HostClock::now();
   if (fidelity == Fidelity::functional)
     throw UserError("--fidelity", 0,
@@ -140,11 +140,12 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
   const std::vector<Group> groups = group(machine, sweep.points);
   const auto opened = open_input(scene_or_trace);
   std::optional<WorkCache> cache;
-  if (cache_folder) cache.emplace(*cache_folder);
-  if (before_work) before_work(opened);
+  if (options.cache) cache.emplace(*options.cache);
+  if (options.before_work) options.before_work(opened);
   std::size_t done = 0;
   for (const Group& same : groups) {
     sweep.input = make_input(opened, scene_or_trace, same.machine);
+    sweep.replaced = replace_programs(sweep.input.trace, options.programs);
     const Trace& trace = sweep.input.trace;
     if (fidelity != Fidelity::throughput && done == 0) {  // commands and size depend on no machine
       for (const SweepPoint& point : sweep.points)
@@ -153,13 +154,20 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
     const WorkStream stream = work_of(trace, same.machine, cache, sweep);
     const auto time_one = [&](std::size_t i) {
       const Machine timed = machine_of(machine, sweep.points[same.points[i]]);
-      return json_text(timing_json(time_frame(trace, stream.work, timed, fidelity)));
+      const sim::Result timing = time_frame(trace, stream.work, timed, fidelity);
+      const Rate rate = rate_of(timing);
+      return json_text({{"results", timing_json(timing)}, {"rate", {rate.fps, rate.bottleneck, rate.share}}});
     };
     const auto answers = in_processes(same.points.size(), std::thread::hardware_concurrency(), time_one,
                                       [&](std::size_t n) { tell(progress, done + n, sweep.points.size()); });
     done += answers.size();
-    for (std::size_t i = 0; i < answers.size(); ++i)
-      sweep.points[same.points[i]].results = Json::parse(answers[i]);
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      SweepPoint& point = sweep.points[same.points[i]];
+      Json answer = Json::parse(answers[i]);
+      point.results = std::move(answer["results"]);
+      const Json& rate = answer["rate"];
+      point.rate = {rate[0].get<double>(), rate[1].get<std::string>(), rate[2].get<double>()};
+    }
   }
   sweep.host_seconds = seconds_since(start);
   return sweep;

@@ -27,6 +27,7 @@ std::vector<SweptParameter> swept_parameters(const std::vector<std::string>& tex
 struct SweepPoint {
   std::vector<std::pair<std::string, std::string>> settings;  // by parameter
   nlohmann::ordered_json results;  // as `frames`, `units` and `units_left_out` of a run's results
+  Rate rate;                       // of all frames
 };
 
 struct Sweep {
@@ -35,17 +36,24 @@ struct Sweep {
   std::size_t functions = 0;                   // computed: one for each set of number formats
   std::size_t from_cache = 0;                  // read from the cache instead
   std::vector<std::filesystem::path> damaged;  // of the cache: computed again
+  std::vector<std::string> replaced;           // programs, a line for people on each
   double host_seconds = 0;
+};
+
+struct SweepOptions {
+  std::vector<std::string> programs = {};               // NAME=FILE, as replace_programs takes them
+  std::optional<std::filesystem::path> cache = {};      // a folder for WorkCache
+  std::function<void(const Opened&)> before_work = {};  // called once the input is found right, with that
 };
 
 // Every combination of the values, the last parameter running fastest, on `machine`, whose own parameters
 // need fit together only with those values. Parameters that the function depends on (numbers.*,
 // vertex.cache_entries) may be swept too: it is then computed for each. Timings run in as many processes as
-// the host has threads. `before_work` is called once all input is found right, with that.
+// the host has threads. Throws UserError where the input, a machine or a program is wrong, before any of it
+// is run.
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
-                const std::optional<std::filesystem::path>& cache, const Progress& progress = {},
-                const std::function<void(const Opened&)>& before_work = {});
+                const SweepOptions& options = {}, const Progress& progress = {});
 
 nlohmann::ordered_json results_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity);
 

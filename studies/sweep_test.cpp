@@ -73,9 +73,8 @@ using Sweeps = SweepFiles;
 using WorkCaches = SweepFiles;
 
 TEST_F(Sweeps, EveryPointIsWhatARunOfItsOwnSays) {
-  const Sweep sweep =
-      run_sweep(file, machine, {{"vertex.units", {"1", "3"}}, {"memory.channels", {"1", "2", "4"}}},
-                Fidelity::cycle, {});
+  const Sweep sweep = run_sweep(
+      file, machine, {{"vertex.units", {"1", "3"}}, {"memory.channels", {"1", "2", "4"}}}, Fidelity::cycle);
   ASSERT_EQ(sweep.points.size(), 6u);
   EXPECT_EQ(sweep.functions, 1u);
   for (const SweepPoint& point : sweep.points) {
@@ -93,8 +92,8 @@ TEST_F(Sweeps, EveryPointIsWhatARunOfItsOwnSays) {
 TEST_F(Sweeps, TheMachinesAreCheckedWithAllTheirParameters) {
   machine::assign(machine, "memory.interleave_bytes=4096");
   const auto sweep = [&](std::vector<std::string> rows) {
-    return run_sweep(file, machine, {{"memory.row_bytes", std::move(rows)}}, Fidelity::cycle, {}, {},
-                     [](const Opened&) { FAIL() << "a machine is wrong"; });
+    return run_sweep(file, machine, {{"memory.row_bytes", std::move(rows)}}, Fidelity::cycle,
+                     {.before_work = [](const Opened&) { FAIL() << "a machine is wrong"; }});
   };
   try {
     sweep({"8192", "2048"});
@@ -103,15 +102,13 @@ TEST_F(Sweeps, TheMachinesAreCheckedWithAllTheirParameters) {
     EXPECT_STREQ(error.what(),
                  "--set: memory.interleave_bytes is 4096, expected at most memory.row_bytes (2048)");
   }
-  const Sweep good =
-      run_sweep(file, machine, {{"memory.row_bytes", {"4096", "8192"}}}, Fidelity::throughput, {});
+  const Sweep good = run_sweep(file, machine, {{"memory.row_bytes", {"4096", "8192"}}}, Fidelity::throughput);
   EXPECT_EQ(good.points.size(), 2u);
 }
 
 TEST_F(Sweeps, TheFunctionIsComputedForEachOfItsFormats) {
-  const Sweep sweep =
-      run_sweep(file, machine, {{"vertex.cache_entries", {"1", "18"}}, {"setup.latency", {"5", "6"}}},
-                Fidelity::cycle, {});
+  const Sweep sweep = run_sweep(
+      file, machine, {{"vertex.cache_entries", {"1", "18"}}, {"setup.latency", {"5", "6"}}}, Fidelity::cycle);
   EXPECT_EQ(sweep.functions, 2u);
   EXPECT_NE(sweep.points[0].results, sweep.points[2].results);
 }
@@ -120,7 +117,7 @@ TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
   const std::vector<SweptParameter> swept{{"vertex.units", {"1", "2"}}};
   const std::filesystem::path cache = folder / "cache";
   const auto sweep = [&](Fidelity fidelity = Fidelity::cycle) {
-    return run_sweep(file, machine, swept, fidelity, cache);
+    return run_sweep(file, machine, swept, fidelity, {.cache = cache});
   };
   const Sweep first = sweep();
   EXPECT_EQ(first.functions, 1u);
@@ -141,7 +138,7 @@ TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
   const Sweep estimate = sweep(Fidelity::throughput);
   EXPECT_EQ(estimate.from_cache, 1u);
   EXPECT_EQ(estimate.points[1].results,
-            run_sweep(file, machine, swept, Fidelity::throughput, {}).points[1].results);
+            run_sweep(file, machine, swept, Fidelity::throughput).points[1].results);
 }
 
 // JSON holds no infinity.
@@ -168,7 +165,7 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
   EXPECT_THROW(swept_parameter("vertex.units="), UserError);
   const auto error_of = [&](const char* text) {
     try {
-      run_sweep(file, machine, {swept_parameter(text)}, Fidelity::cycle, {});
+      run_sweep(file, machine, {swept_parameter(text)}, Fidelity::cycle);
     } catch (const UserError& error) {
       return std::string(error.what());
     }
@@ -180,7 +177,7 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
               0u)
         << text;
   }
-  EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1"}}}, Fidelity::functional, {}), UserError);
+  EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1"}}}, Fidelity::functional), UserError);
 }
 
 TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {

@@ -1,0 +1,74 @@
+#include "studies/sweep_report.h"
+
+#include <gtest/gtest.h>
+
+namespace splatscope::studies {
+namespace {
+
+// On a machine with these settings, frames of so many cycles at 1 MHz.
+SweepPoint point(std::vector<std::pair<std::string, std::string>> settings, std::vector<int> cycles) {
+  SweepPoint out{.settings = std::move(settings), .results = {}, .rate = {}};
+  double all = 0;
+  for (const int count : cycles) {
+    out.results["frames"].push_back(
+        {{"cycles", count}, {"milliseconds", count / 1e3}, {"frames_per_second", 1e6 / count}});
+    all += count;
+  }
+  out.rate = {static_cast<double>(cycles.size()) * 1e6 / all, "vertex0", 0.5};
+  return out;
+}
+
+Sweep two_by_two() {
+  Sweep sweep;
+  sweep.points.push_back(point({{"vertex.units", "1"}, {"memory.channels", "4"}}, {1000, 3000}));
+  sweep.points.push_back(point({{"vertex.units", "1"}, {"memory.channels", "2"}}, {2000, 6000}));
+  sweep.points.push_back(point({{"vertex.units", "2"}, {"memory.channels", "4"}}, {500, 500}));
+  sweep.points.push_back(point({{"vertex.units", "2"}, {"memory.channels", "2"}}, {1000, 1000}));
+  return sweep;
+}
+
+TEST(SweepReport, TheTableHasALineForEachFrameOfEachMachine) {
+  EXPECT_EQ(csv_of(two_by_two()),
+            "vertex.units,memory.channels,frame,cycles,milliseconds,frames_per_second,bottleneck,"
+            "bottleneck_busy_share\n"
+            "1,4,0,1000,1,1000,vertex0,0.5\n"
+            "1,4,1,3000,3,333.3333333333333,vertex0,0.5\n"
+            "1,2,0,2000,2,500,vertex0,0.5\n"
+            "1,2,1,6000,6,166.66666666666666,vertex0,0.5\n"
+            "2,4,0,500,0.5,2000,vertex0,0.5\n"
+            "2,4,1,500,0.5,2000,vertex0,0.5\n"
+            "2,2,0,1000,1,1000,vertex0,0.5\n"
+            "2,2,1,1000,1,1000,vertex0,0.5\n");
+}
+
+TEST(SweepReport, ACurveForEachCombinationOverTheLastParameterInItsOrder) {
+  const auto plot = plot_of(two_by_two());
+  ASSERT_TRUE(plot);
+  EXPECT_EQ(plot->x_label, "memory.channels");
+  ASSERT_EQ(plot->series.size(), 2u);
+  EXPECT_EQ(plot->series[0].name, "vertex.units = 1");
+  EXPECT_EQ(plot->series[0].x, (std::vector<double>{2, 4}));
+  EXPECT_EQ(plot->series[0].y, (std::vector<double>{250, 500}));
+  EXPECT_EQ(plot->series[1].name, "vertex.units = 2");
+  EXPECT_EQ(plot->series[1].y, (std::vector<double>{1000, 2000}));
+}
+
+TEST(SweepReport, NoCurveWhereTheyWouldBeTooManyOrValuesAreNoNumbers) {
+  Sweep many, words;
+  for (int i = 0; i < 9; ++i) {
+    many.points.push_back(point({{"vertex.units", std::to_string(i)}, {"memory.channels", "1"}}, {1000}));
+    EXPECT_EQ(plot_of(many).has_value(), i < 8) << i;
+  }
+  words.points.push_back(point({{"memory.fast_clear", "true"}}, {1000}));
+  EXPECT_FALSE(plot_of(words));
+}
+
+TEST(SweepReport, ThePageAddsTheFramesOfAMachineUp) {
+  const std::string html = report_of(two_by_two(), machine::load("geforce4-ti4400"), Fidelity::cycle).html();
+  EXPECT_NE(html.find("8000"), std::string::npos);
+  EXPECT_NE(html.find("vertex0 (50 % busy)"), std::string::npos);
+  EXPECT_NE(html.find("image/svg+xml"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace splatscope::studies
