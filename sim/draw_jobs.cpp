@@ -83,13 +83,15 @@ void count_items(DrawJob& job) {
 }
 
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec) {
-  const auto arithmetic = std::count_if(
-      program.instructions.begin(), program.instructions.end(), [&](const isa::Instruction& instruction) {
-        const isa::OpcodeInfo* info = isa::find_opcode(program.version, instruction.opcode);
-        return info && info->unit == isa::OpcodeClass::arithmetic;
-      });
-  const auto rate = static_cast<std::uint64_t>(spec.instructions_per_clock);
-  return std::max<std::uint64_t>((static_cast<std::uint64_t>(arithmetic) + rate - 1) / rate, 1);
+  int halves = 0;
+  for (const isa::Instruction& instruction : program.instructions) {
+    const isa::OpcodeInfo* info = isa::find_opcode(program.version, instruction.opcode);
+    if (!info || info->unit != isa::OpcodeClass::arithmetic) continue;
+    const unsigned mask = instruction.destination.mask;
+    halves += info->slots * (((mask & 0x7u) != 0) + ((mask & 0x8u) != 0));
+  }
+  const int clocks = (halves + spec.instructions_per_clock - 1) / spec.instructions_per_clock;
+  return static_cast<std::uint64_t>(std::max(clocks, 1));
 }
 
 MemoryLayout lay_out(const Trace& trace, const Machine& machine) {

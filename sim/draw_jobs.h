@@ -36,8 +36,9 @@ struct Needs {
 };
 Needs needs_of(const Trace& trace);
 
-// Clocks of a quad in the pixel unit: its arithmetic instructions at `pixel.instructions_per_clock`, at
-// least 1.
+// Clocks of a quad in the pixel unit, at least 1: the halves of its arithmetic instructions, colour and
+// alpha, each for the slots that it takes, at `pixel.instructions_per_clock`. So a co-issued pair is as long
+// as one instruction that writes both.
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec);
 
 // Whether the counts of a work record agree with each other and with its draw.

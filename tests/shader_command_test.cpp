@@ -51,10 +51,17 @@ TEST(ShaderCommand, CheckSaysWhatIsDeadAndWhatItCosts) {
 
 TEST(ShaderCommand, CheckCountsTheClocksOfAPixelProgram) {
   const ScratchFolder folder;
-  folder.file("a.ps", "ps_1_1\ntex t0\nmul r0, t0, v0\nadd r0, r0, v1\nmul r0, r0, v0\n");
-  const Outcome outcome = run_program({"shader", "check", "a.ps"}, folder.path());
-  EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_NE(outcome.out.find("geforce4-ti4400: 2 clocks a quad"), std::string::npos) << outcome.out;
+  const auto clocks = [&](const std::string& program, const char* expected) {
+    folder.file("a.ps", program);
+    const Outcome outcome = run_program({"shader", "check", "a.ps"}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_NE(outcome.out.find(std::string("geforce4-ti4400: ") + expected), std::string::npos)
+        << program << outcome.out;
+  };
+  clocks("ps_1_1\ntex t0\nmul r0, t0, v0\nadd r0, r0, v1\nmul r0.rgb, r0, v0\n", "3 clocks a quad");
+  clocks("ps_1_1\ntex t0\nmul r0.rgb, t0, v0\n+ mul r0.a, t0, v0\n", "1 clocks a quad");
+  clocks("ps_1_1\nmov r0, v0\n", "1 clocks a quad");
+  clocks("ps_1_2\ndp4 r0, v0, v1\n", "2 clocks a quad");
 }
 
 TEST(ShaderCommand, ABrokenRuleIsExit2WithItsPlaceAndNoFile) {

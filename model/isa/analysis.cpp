@@ -36,7 +36,7 @@ RegisterSet live_at_the_end(const Program& program) {
   if (program.version.kind == ShaderKind::pixel)
     include(set, RegisterFile::temporary, 0, 0xf);
   else
-    for (std::size_t bit = 4 * kOutputs; bit < kRegisterBits; ++bit) set.set(bit);
+    for (std::size_t bit = 4 * kOutputs; bit < kFirstRow; ++bit) set.set(bit);
   return set;
 }
 
@@ -179,9 +179,15 @@ Effects effects_of(const Program& program, const Instruction& instruction) {
   const Destination& destination = instruction.destination;
   const Opcode opcode = instruction.opcode;
   const bool reads_destination = opcode == texdepth || (opcode == texkill && program.version.minor == 4);
-  effects.side_effect = opcode == texkill || opcode == texdepth || opcode == texm3x2depth ||
-                        opcode == texm3x2pad || opcode == texm3x3pad;
-  if (reads_destination) include(effects.reads, destination.file, destination.index, 0x7);
+  effects.side_effect = opcode == texkill || opcode == texdepth || opcode == texm3x2depth;
+  if (reads_destination)
+    include(effects.reads, destination.file, destination.index, opcode == texdepth ? 0x3 : 0x7);
+  if (opcode == texm3x2pad || opcode == texm3x3pad) {
+    effects.writes.set(kFirstRow + destination.index);
+    return effects;
+  }
+  for (int row = 1; row < texture_matrix_rows(opcode); ++row)
+    effects.reads.set(kFirstRow + destination.index - static_cast<std::size_t>(row));
   if (opcode != texkill && opcode != texdepth)
     include(effects.writes, destination.file, destination.index, destination.mask);
   return effects;

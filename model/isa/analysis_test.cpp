@@ -62,6 +62,22 @@ TEST(Analysis, FollowsInputs) {
   EXPECT_EQ(dependent_on(program, 1u << 5), std::vector<bool>(5));
 }
 
+TEST(Analysis, TheLastRowOfATextureMatrixReadsTheOthers) {
+  const std::string matrix = "ps_1_1\ntex t0\ntexm3x3pad t1, t0\ntexm3x3pad t2, t0\ntexm3x3tex t3, t0\n";
+  const Analysis used = analyze(load(matrix + "mov r0, t3\n", "a"));
+  EXPECT_EQ(dead(used), std::vector<bool>(5));
+  EXPECT_EQ(used.critical_path, (std::vector<std::size_t>{0, 1, 3, 4}));
+  EXPECT_EQ(used.critical_slots, 4);
+  const Analysis unused = analyze(load(matrix + "mov r0, v0\n", "a"));
+  EXPECT_EQ(dead(unused), (std::vector<bool>{true, true, true, true, false}));
+}
+
+TEST(Analysis, TexdepthReadsTwoComponents) {
+  const Analysis analysis =
+      analyze(load("ps_1_4\ntexcrd r5.rg, t0_dw.xyw\nmov r5.b, c0\nphase\ntexdepth r5\nmov r0, v0\n", "a"));
+  EXPECT_EQ(dead(analysis), (std::vector<bool>{false, true, false, false, false}));
+}
+
 TEST(Analysis, PairsReadBeforeTheyWriteAndPhasesLoseAlpha) {
   const Analysis pair = analyze(load("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, v1\n", "a"));
   EXPECT_EQ(dead(pair), (std::vector<bool>{false, false, false}))

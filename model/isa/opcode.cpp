@@ -129,6 +129,23 @@ MatrixShape matrix_shape(Opcode opcode) {
   }
 }
 
+int texture_matrix_rows(Opcode opcode) {
+  switch (opcode) {
+    case texm3x2pad:
+    case texm3x2tex:
+    case texm3x2depth:
+      return 2;
+    case texm3x3pad:
+    case texm3x3tex:
+    case texm3x3spec:
+    case texm3x3vspec:
+    case texm3x3:
+      return 3;
+    default:
+      return 0;
+  }
+}
+
 int slots_at(const Program& program, std::size_t at) {
   const auto slots = [&](const Instruction& instruction) {
     const OpcodeInfo* info = find_opcode(program.version, instruction.opcode);

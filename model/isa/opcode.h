@@ -43,6 +43,10 @@ struct MatrixShape {
 };
 MatrixShape matrix_shape(Opcode opcode);
 
+// Rows of the matrix that a texture instruction has one of, its pads and the last (texm3x2*: 2); 0 for
+// others.
+int texture_matrix_rows(Opcode opcode);
+
 // Limits of the machines of 2002 (Direct3D 8.1 reference; caps of GeForce3/4 and Radeon 8500).
 inline constexpr int kVertexConstants = 96;
 inline constexpr int kVertexInputs = 16;

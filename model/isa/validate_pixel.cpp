@@ -216,7 +216,7 @@ class PixelValidator {
     if (source.index >= stage)
       reject(program_, instruction,
              "the source of a texture address instruction is of an earlier stage than its destination");
-    const bool matrix = row_count(instruction.opcode) > 0;
+    const bool matrix = texture_matrix_rows(instruction.opcode) > 0;
     const bool never = instruction.opcode == texreg2ar || instruction.opcode == texreg2gb;
     const bool scaled =
         source.modifier == SourceModifier::bx2 && !never && (matrix || program_.version.minor > 1);
@@ -263,25 +263,8 @@ class PixelValidator {
 
   // Matrix rows: texm3x2pad and its last row, texm3x3pad twice and its last row, in consecutive stages of one
   // source.
-  static int row_count(Opcode opcode) {
-    switch (opcode) {
-      case texm3x2pad:
-      case texm3x2tex:
-      case texm3x2depth:
-        return 2;
-      case texm3x3pad:
-      case texm3x3tex:
-      case texm3x3spec:
-      case texm3x3vspec:
-      case texm3x3:
-        return 3;
-      default:
-        return 0;
-    }
-  }
-
   void check_rows(const Instruction& instruction) const {
-    const int rows = row_count(instruction.opcode);
+    const int rows = texture_matrix_rows(instruction.opcode);
     const bool pad = instruction.opcode == texm3x2pad || instruction.opcode == texm3x3pad;
     const bool first = pads_ == 0;
     if (rows == 0 && !first) reject(program_, instruction, "the rows of a matrix must follow one another");
@@ -396,7 +379,7 @@ class PixelValidator {
       if (phase_marker_seen_) before_phase_[index] = 0;
       return;
     }
-    const int rows = row_count(instruction.opcode);
+    const int rows = texture_matrix_rows(instruction.opcode);
     const bool pad = instruction.opcode == texm3x2pad || instruction.opcode == texm3x3pad;
     if (pad && pads_ == 0) {
       pad_stage_ = destination.index;

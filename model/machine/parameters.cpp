@@ -151,7 +151,7 @@ std::vector<Parameter> pixel_parameters() {
       {"pixel.quads_per_clock", "quads", integer<&M::pixel, &M::Pixel::quads_per_clock>(1, 16),
        "2x2 quads a clock from rasteriser to blending: a quarter of the pixel pipes"},
       {"pixel.instructions_per_clock", "", integer<&M::pixel, &M::Pixel::instructions_per_clock>(1, 16),
-       "arithmetic instructions of the pixel program a clock, a pipe"},
+       "halves of arithmetic instructions, colour or alpha, of the pixel program a clock, a pipe"},
       {"pixel.latency", "clocks", integer<&M::pixel, &M::Pixel::latency>(1, 256), "through the pixel unit"},
       {"pixel.queue", "quads", integer<&M::pixel, &M::Pixel::queue>(1, 1024),
        "quads in and behind the pixel unit"},

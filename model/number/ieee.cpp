@@ -65,7 +65,7 @@ float log2_magnitude(float a) {
 }
 
 float fraction(float a) {
-  return add(a, -std::floor(a));
+  return std::isnan(a) ? quiet(a) : add(a, -std::floor(a));
 }
 
 Vector expp(float a) {

@@ -24,6 +24,14 @@ TEST(Ieee, NanOfTheSecondOperandWins) {
   EXPECT_EQ(bits(add(from(0x7f800001), 0.0f)), 0x7fc00001u) << "a signalling NaN is quieted";
 }
 
+TEST(Ieee, TheFractionOfANanIsThatNan) {
+  for (const std::uint32_t nan : {0x7fc00001u, 0xffc00001u}) {
+    EXPECT_EQ(bits(fraction(from(nan))), nan);
+    EXPECT_EQ(bits(expp(from(nan))[1]), nan);
+  }
+  EXPECT_EQ(fraction(-1.25f), 0.75f);
+}
+
 TEST(Ieee, ReciprocalSqrtIsCorrectlyRounded) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(seed);
