@@ -124,7 +124,8 @@ Json mesh_json(const traces::MeshCounts& mesh) {
           {"triangles_out_of_range", mesh.triangles_out_of_range},
           {"triangles_degenerate", mesh.triangles_degenerate},
           {"normals_computed", mesh.normals_computed},
-          {"textures_unreadable", mesh.textures_unreadable}};
+          {"textures_unreadable", mesh.textures_unreadable},
+          {"materials_unreadable", mesh.materials_unreadable}};
 }
 
 Json blocks_json(const traces::BlockCounts& blocks) {

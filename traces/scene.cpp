@@ -95,8 +95,9 @@ std::string describe(const MeshCounts& mesh) {
                         listed({{mesh.triangles_not_finite, "not finite"},
                                 {mesh.triangles_out_of_range, "with a corner that does not exist"},
                                 {mesh.triangles_degenerate, "without area"}}));
-  const std::string mended = listed(
-      {{mesh.normals_computed, "normals computed"}, {mesh.textures_unreadable, "textures unreadable"}});
+  const std::string mended = listed({{mesh.normals_computed, "normals computed"},
+                                     {mesh.textures_unreadable, "textures unreadable"},
+                                     {mesh.materials_unreadable, "files of materials unreadable"}});
   return mended.empty() ? text : text + ", " + mended;
 }
 

@@ -102,6 +102,7 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
     counts = mend(file.model.mesh);
     counts.triangles_out_of_range += file.faces_out_of_range;
     counts.textures_unreadable = file.textures_unreadable;
+    counts.materials_unreadable = file.materials_unreadable;
     model = std::move(file.model);
     if (model.mesh.triangles.empty())
       throw UserError((folder / source.file).string(), 0, "no triangle of it has a surface, expected a mesh");

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "model/error.h"
 #include "model/run_apart.h"
@@ -177,6 +178,19 @@ std::size_t drop_faces_out_of_range(aiScene& scene, bool& polygons) {
   return dropped;
 }
 
+// Material files that an OBJ file names and that are not there. After each assimp looks for one of the mesh's
+// own name, which is none that was missed.
+std::size_t missing_materials(const std::vector<std::filesystem::path>& files, std::filesystem::path mesh) {
+  std::set<std::filesystem::path> missing;
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    if (ending_of(file) == ".mtl" && !std::filesystem::is_regular_file(file, error))
+      missing.insert(file.lexically_normal());
+  }
+  if (missing.size() > 1) missing.erase(mesh.replace_extension(".mtl").lexically_normal());
+  return missing.size();
+}
+
 }  // namespace
 
 bool is_mesh_file(const std::filesystem::path& path) {
@@ -217,6 +231,7 @@ MeshFile read_whole(const std::filesystem::path& path) {
     throw UserError(file, 0, "its polygons cannot be cut into triangles, expected a mesh");
   MeshFile result = Reader(path, *scene).read();
   result.faces_out_of_range = dropped;
+  result.materials_unreadable = missing_materials(files, path);
   result.files.insert(result.files.end(), files.begin(), files.end());
   return result;
 }

@@ -11,6 +11,7 @@ struct MeshFile {
   Model model;                               // unmended; colours from texture, vertex colours or material
   std::size_t faces_out_of_range = 0;        // left out already: an index beyond the vertices
   std::size_t textures_unreadable = 0;       // the material's colour stands in
+  std::size_t materials_unreadable = 0;      // files of an OBJ file: light grey stands in
   std::vector<std::filesystem::path> files;  // itself and what it names: materials, buffers, all textures
 };
 

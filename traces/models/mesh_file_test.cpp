@@ -178,6 +178,20 @@ TEST_F(MeshFileTest, ColoursComeFromTheTexture) {
   EXPECT_EQ(without.surfels[0].color, glm::vec3(0.5f)) << "the material's colour stands in";
 }
 
+TEST_F(MeshFileTest, FilesOfMaterialsThatAreMissingAreCounted) {
+  file("here.mtl", "newmtl red\nKd 1 0 0\n");
+  const auto missing = [&](const char* mesh, const std::string& libraries) {
+    const Scene scene = scene_of(mesh, libraries + std::string(kSquare), "count = 4\nshading = 0\n");
+    return scene.mesh.materials_unreadable;
+  };
+  EXPECT_EQ(missing("m.obj", ""), 0u);
+  EXPECT_EQ(missing("m.obj", "mtllib here.mtl\n"), 0u);
+  EXPECT_EQ(missing("m.obj", "mtllib gone.mtl\n"), 1u);
+  EXPECT_EQ(missing("m.obj", "mtllib m.mtl\n"), 1u);
+  EXPECT_EQ(missing("m.obj", "mtllib gone.mtl\nmtllib here.mtl\nmtllib lost.mtl\n"), 2u);
+  EXPECT_EQ(missing("here.obj", "mtllib gone.mtl\n"), 1u) << "assimp takes here.mtl for it";
+}
+
 TEST_F(MeshFileTest, PatternsAreFunctionsOfThePlace) {
   const Scene scene = scene_of("square.obj", kSquare,
                                "count = 300\npattern = \"stripes\"\npattern_scale = 0.3\nshading = 0\n");
