@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t kAsked = 10000;    // surfels
 constexpr std::size_t kNeighbours = 64;  // whose splats may reach a surfel
-// The largest sum between the surfels of a square grid is 1.37, the largest at them 1.275.
+// The largest sum between the surfels of a square grid is 1.355, that at them 1.275: 1.063 times as much. A
+// little is left to grids that are not square.
 constexpr double kBetween = 1.07;
 constexpr double kShare = 0.99;  // of the surfels whose sums do not saturate
 

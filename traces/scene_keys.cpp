@@ -108,7 +108,7 @@ const std::array kKeys = {
         "scale of the weights against saturation (Ren 2002, 7.2); 0: 0.73, or less where more splats overlap",
         RealValue{[](S& s) -> double& { return s.splatting.gamma; }, 0, 0, 1}},
     // 1: V_r = I where the radius h is the unit. On a square grid h is sqrt 2 spacings; the truncated splats
-    // then sum to at most 1.37, whose inverse is the paper's gamma = 0.73.
+    // then sum to at most 1.355, whose inverse is about the paper's gamma = 0.73.
     SceneKey{"splatting", "sigma", "radii", "standard deviation of the reconstruction filter",
              RealValue{[](S& s) -> double& { return s.splatting.sigma; }, 1, 0.01, 10}},
     SceneKey{"splatting", "circular_cutoff", "", "texels further than `cutoff` from the centre are 0",
