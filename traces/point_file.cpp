@@ -124,6 +124,8 @@ bool ply_has_faces(const std::filesystem::path& path) {
   bool faces = false;
   for (const PlyElement& element : header.elements) {
     check_size(header, element, std::filesystem::file_size(path), file);
+    if (element.name == "tristrips" && element.count > 0)  // assimp makes other triangles of them
+      throw UserError(file, 0, "holds triangle strips, expected a mesh of faces, or points alone");
     faces |= element.name == "face" && element.count > 0;
   }
   return faces;

@@ -119,6 +119,15 @@ TEST_F(MeshFileTest, APlyWithFacesIsAMeshAndOneWithoutIsPoints) {
   const Scene points = scene_of("p.ply", fmt::format("{}end_header\n{}", head, vertices), "");
   EXPECT_EQ(points.surfels.size(), 3u);
   EXPECT_EQ(points.mesh.triangles, 0u);
+  const std::string strips =
+      fmt::format("{}element tristrips 1\nproperty list uchar int vertex_indices\nend_header\n{}3 0 1 2\n",
+                  head, vertices);
+  try {
+    scene_of("s.ply", strips, "");
+    FAIL() << "strips are no points";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("holds triangle strips, expected"), std::string::npos);
+  }
 }
 
 TEST_F(MeshFileTest, AByteOrderMarkIsPassedOver) {
