@@ -1,16 +1,11 @@
 #include "studies/measure.h"
 
-#include <algorithm>
-#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "traces/median.h"
 
 namespace splatscope::studies {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 double median_seconds(int repeats, const std::function<void()>& work) {
   std::vector<double> seconds;
@@ -19,7 +14,7 @@ double median_seconds(int repeats, const std::function<void()>& work) {
     work();
     seconds.push_back(seconds_since(start));
   }
-  return median(std::move(seconds));
+  return traces::median(std::span(seconds));
 }
 
 }  // namespace splatscope::studies

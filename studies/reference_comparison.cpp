@@ -6,9 +6,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <span>
 
 #include "model/error.h"
-#include "studies/measure.h"
+#include "traces/median.h"
 #include "traces/splat_trace.h"
 
 namespace splatscope::studies {
@@ -18,7 +19,7 @@ double median_weight(const kernels::SplatSums& reference) {
   for (const glm::dvec4& sum : reference.sums) {
     if (sum.w > 0) weights.push_back(sum.w);
   }
-  return median(std::move(weights));
+  return traces::median(std::span(weights));
 }
 
 namespace {

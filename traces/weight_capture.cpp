@@ -16,6 +16,7 @@
 #include "model/render.h"
 #include "model/stop.h"
 #include "traces/edges.h"
+#include "traces/median.h"
 
 namespace splatscope::traces {
 namespace {
@@ -79,12 +80,6 @@ CaptureView looking_from(const Sphere& sphere, const glm::dvec3& from, int frame
   return {camera.eye, view_of(camera, {frame_size, frame_size})};
 }
 
-float median(std::span<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 // What the views show, and what they say about a point of the surface.
 class CapturedViews {
  public:
@@ -126,7 +121,7 @@ class CapturedViews {
       const float sum = seen_sum(views_[i].view, frames_[i], point);
       if (sum > 0) scratch.push_back(sum);
     }
-    return scratch.empty() ? 0 : median(scratch);
+    return median(std::span(scratch));
   }
 
  private:
@@ -216,7 +211,7 @@ CapturedWeights capture_weights(std::span<const Surfel> surfels, const Splatting
     out.at_edges += sums[k] > 0 && edge[k];
   }
   out.captured = seen.size();
-  const VertexWeights fallback = equal_weights(seen.empty() ? 1 : splatting.gamma / median(seen));
+  const VertexWeights fallback = equal_weights(seen.empty() ? 1 : splatting.gamma / median(std::span(seen)));
   for (std::size_t k = 0; k < surfels.size(); ++k) {
     if (sums[k] == 0) out.weights[k] = fallback;
   }

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "traces/median.h"
 
 namespace splatscope::studies {
 namespace {
@@ -123,9 +126,7 @@ std::vector<Table2Row> table2_rows(Fidelity fidelity, const Progress& progress) 
 double median_error(std::span<const Table2Row> rows) {
   std::vector<double> errors;
   for (const Table2Row& row : rows) errors.push_back(std::abs(row.error()));
-  std::ranges::sort(errors);
-  const std::size_t middle = errors.size() / 2;
-  return errors.size() % 2 == 1 ? errors[middle] : (errors[middle - 1] + errors[middle]) / 2;
+  return traces::median(std::span(errors));
 }
 
 void reproduce_table2(Findings& findings, const Progress& progress) {

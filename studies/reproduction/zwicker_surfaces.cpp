@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "kernels/reference/fast_splatting.h"
 #include "studies/measure.h"
+#include "traces/median.h"
 
 namespace splatscope::studies {
 namespace {
@@ -78,7 +80,7 @@ kernels::LayeredPicture draw_layered(const SurfaceModel& model, int layers) {
   };
   std::vector<double> weights = draw().weights;
   std::erase(weights, 0.0);
-  settings.whole_weight = 0.9 * median(std::move(weights));
+  settings.whole_weight = 0.9 * traces::median(std::span(weights));
   return draw();
 }
 

@@ -9,11 +9,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <span>
 #include <vector>
 
 #include "model/machine/machine.h"
 #include "model/render.h"
 #include "tests/llvmpipe/gl_renderer.h"
+#include "traces/median.h"
 #include "traces/recorder.h"
 #include "traces/scene.h"
 
@@ -32,11 +34,6 @@ double time_of(Run run) {
   const double start = milliseconds();
   run();
   return milliseconds() - start;
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
 }
 
 // Mean absolute difference of a channel, in steps of 1/255.
@@ -64,7 +61,8 @@ void compare(int rounds) {
   fmt::print(
       "{{\"renderer\": \"{}\", \"rounds\": {},\n \"splatscope_ms\": {:.1f}, \"renderer_ms\": {:.1f}, "
       "\"ratio\": {:.2f},\n \"mean_difference_in_steps\": {:.2f}}}\n",
-      mesa.name(), rounds, median(ours), median(theirs), median(ratios),
+      mesa.name(), rounds, traces::median(std::span(ours)), median(std::span(theirs)),
+      traces::median(std::span(ratios)),
       difference(rendered.frame, mesa.read()));
 }
 
