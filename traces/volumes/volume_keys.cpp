@@ -40,6 +40,8 @@ std::span<const SceneKey> volume_keys() {
        TextValue{[](S& s) -> std::string& { return s.volume.positions; }, ""}},
       {"volume", "samples", "", "irregular data in the place of a grid (PLY), relative to the scene file",
        TextValue{[](S& s) -> std::string& { return s.volume.samples; }, ""}},
+      {"volume", "mirror", "", "mirrors the volume in x: for files whose coordinates are right-handed",
+       BooleanValue{[](S& s) -> bool& { return s.volume.mirror; }, false}},
       {"volume", "transfer", "",
        "opacity and colour by value, straight lines between; the opacity of a path as long as the cube root "
        "of the voxel's cell, which is that of a layer of voxels where they are cubes; none: a grey ramp",

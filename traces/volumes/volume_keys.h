@@ -19,6 +19,7 @@ struct VolumeKeys {
   std::vector<double> x, y, z;                   // places of a rectilinear grid; none: evenly
   std::string positions;                         // file of a curvilinear grid's places; empty: none
   std::string samples;                           // file of an irregular set; empty: a grid
+  bool mirror = false;                           // in x
   std::vector<kernels::TransferPoint> transfer;  // none: a ramp over the values
   double kernel_variance = 1;
   double surface_low = 0, surface_high = 0;  // values drawn as flat kernels

@@ -158,6 +158,26 @@ void add_data_files(const SceneSettings& settings, const std::filesystem::path& 
   if (!keys.positions.empty()) files.push_back({"the header", nrrd_data_file(folder / keys.positions, 3)});
 }
 
+// In x: columns change places, so that a grid's steps stay positive. The kernels of irregular data are
+// spheres, which are their own mirror images.
+void mirror(VolumeScene& scene) {
+  kernels::Volume& volume = scene.volume;
+  for (kernels::VolumeSample& sample : scene.samples) {
+    sample.position.x = -sample.position.x;
+    sample.gradient.x = -sample.gradient.x;
+  }
+  if (!scene.samples.empty()) return;
+  const int last = volume.size.x - 1;
+  for (auto row = volume.values.begin(); row != volume.values.end(); row += volume.size.x)
+    std::reverse(row, row + volume.size.x);
+  volume.origin.x = -(volume.origin.x + last * volume.spacing.x);
+  if (!scene.places) return;
+  scene.places = [places = std::move(scene.places), last](const glm::ivec3& voxel) {
+    const glm::dvec3 place = places({last - voxel.x, voxel.y, voxel.z});
+    return glm::dvec3(-place.x, place.y, place.z);
+  };
+}
+
 struct Box {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
 
@@ -238,6 +258,7 @@ VolumeScene parse_volume_scene(std::string_view text, const std::filesystem::pat
   } else {
     read_irregular(settings, file, scene);
   }
+  if (keys.mirror) mirror(scene);
   scene.transfer = transfer_of(keys, scene.volume);
   scene.kernel_variance = keys.kernel_variance;
   scene.flattening = {

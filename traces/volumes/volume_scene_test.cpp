@@ -167,6 +167,32 @@ TEST_F(VolumeKinds, OneVolumeAsEachKindIsOnePicture) {
   }
 }
 
+// Seen from the mirrored place, it is the mirrored picture.
+TEST_F(VolumeKinds, EachKindCanBeMirrored) {
+  for (const std::string keys :
+       {"file = \"values.nrrd\"\n", "file = \"values.nrrd\"\nx = [-2, -1, 0.5, 1, 3]\n",
+        "file = \"values.nrrd\"\npositions = \"places.nrrd\"\n", "samples = \"samples.ply\"\n"}) {
+    const VolumeScene plain = scene(keys);
+    VolumeScene mirrored = scene("mirror = true\n" + keys);
+    mirrored.view = kernels::look_at({-4, 5, 12}, {}, {0, 1, 0}, 35, 40, 40, 1, 40);
+    const auto of_plain = volume_picture(plain.view, plain.splats(), plain.settings).pixels;
+    const auto of_mirrored = volume_picture(mirrored.view, mirrored.splats(), mirrored.settings).pixels;
+    const double middle = plain.view.window(plain.view.camera_space({})).x;
+    const int twice = static_cast<int>(std::lround(2 * middle - 1));  // a pixel's centre is half a step on
+    double worst = 0, brightest = 0;
+    for (int y = 0; y < 40; ++y) {
+      for (int x = std::max(0, twice - 39); x <= std::min(39, twice); ++x) {
+        const auto a = of_plain[static_cast<std::size_t>(40 * y + x)];
+        const auto b = of_mirrored[static_cast<std::size_t>(40 * y + twice - x)];
+        for (int c = 0; c < 4; ++c) worst = std::max(worst, std::abs(a[c] - b[c]));
+        brightest = std::max(brightest, a.w);
+      }
+    }
+    EXPECT_GT(brightest, 0.5) << keys;
+    EXPECT_LT(worst, 1e-6) << keys;  // weights are floats
+  }
+}
+
 // Twice as far apart along x, the voxels reach twice as far.
 TEST_F(VolumeKinds, RectilinearKernelsFollowTheirSpacing) {
   const kernels::VolumeSplats splats = scene("file = \"values.nrrd\"\nx = [0, 1, 2, 4, 6]\n").splats();
