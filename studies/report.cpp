@@ -7,6 +7,7 @@
 
 #include "model/embedded_file.h"
 #include "model/error.h"
+#include "studies/json_text.h"
 #include "traces/output_files.h"
 
 namespace splatscope {
@@ -25,7 +26,7 @@ std::string_view embedded(std::string_view name) {
 std::string escaped(std::string_view text) {
   std::string result;
   result.reserve(text.size());
-  for (char c : text) {
+  for (char c : valid_utf8(text)) {
     switch (c) {
       case '&':
         result += "&amp;";

@@ -9,7 +9,7 @@
 
 namespace splatscope::studies {
 
-// Text as HTML or SVG holds it.
+// Text as HTML or SVG holds it, which are UTF-8.
 std::string escaped(std::string_view text);
 
 // Builds one self-contained HTML page, from top to bottom: style, script and pictures are inside, nothing is

@@ -25,6 +25,12 @@ TEST(Report, EscapesWhateverItIsGiven) {
   EXPECT_TRUE(holds(html, "<td class=\"number\">&lt;1&gt;</td>"));
 }
 
+// The page says that it is UTF-8; names of files need not be.
+TEST(Report, HoldsNoBytesThatAreNoText) {
+  EXPECT_EQ(escaped("a\xFF<\xC3"), "a\xEF\xBF\xBD&lt;\xEF\xBF\xBD");
+  EXPECT_EQ(escaped("\xC3\xA9\\\n"), "\xC3\xA9\\\n");
+}
+
 TEST(Report, LoadsNothing) {
   Image image(2, 2);
   Report report("t", "l");
