@@ -11,8 +11,8 @@ inline constexpr double kPaperGamma = 0.73;  // Ren 2002, section 7.2: "works fo
 
 // The largest scale of the weights, up to the paper's, at which their sums hardly ever exceed 1: what
 // `splatting.gamma = 0` stands for. The paper's is about the inverse of 1.355, the largest sum of a square
-// grid whose radius h is the diagonal; where radii reach further, more splats overlap, 0.73 saturates the frame
-// buffer, and the captured weights would all be the same. Found from the sums at the surfels themselves
+// grid whose radius h is the diagonal; where radii reach further, more splats overlap, 0.73 saturates the
+// frame buffer, and the captured weights would all be the same. Found from the sums at the surfels themselves
 // (10,000 of them, spread evenly over their order), in double precision; 1 in 100 may be larger.
 double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splatting);
 
