@@ -6,7 +6,7 @@ namespace splatscope::studies {
 namespace {
 
 // On a machine with these settings, frames of so many cycles at 1 MHz.
-SweepPoint point(std::vector<std::pair<std::string, std::string>> settings, std::vector<int> cycles) {
+SweepPoint point(std::vector<std::pair<std::string, std::string>> settings, const std::vector<int>& cycles) {
   SweepPoint out{.settings = std::move(settings), .results = {}, .rate = {}};
   double all = 0;
   for (const int count : cycles) {

@@ -61,7 +61,7 @@ void compare(int rounds) {
   fmt::print(
       "{{\"renderer\": \"{}\", \"rounds\": {},\n \"splatscope_ms\": {:.1f}, \"renderer_ms\": {:.1f}, "
       "\"ratio\": {:.2f},\n \"mean_difference_in_steps\": {:.2f}}}\n",
-      mesa.name(), rounds, traces::median(std::span(ours)), median(std::span(theirs)),
+      mesa.name(), rounds, traces::median(std::span(ours)), traces::median(std::span(theirs)),
       traces::median(std::span(ratios)), difference(rendered.frame, mesa.read()));
 }
 
