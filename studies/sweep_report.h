@@ -18,7 +18,7 @@ std::string csv_of(const Sweep& sweep);
 // Nothing where its values are no numbers, or more than eight curves would lie in each other's way.
 std::optional<Plot> plot_of(const Sweep& sweep);
 
-// The sweep as a page: the curves, and a table of all machines.
+// The sweep as a page: the curves, or why they could not be drawn, and a table of all machines.
 Report report_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity);
 
 }  // namespace splatscope::studies

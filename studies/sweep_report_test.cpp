@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace splatscope::studies {
 namespace {
 
@@ -68,6 +70,15 @@ TEST(SweepReport, ThePageAddsTheFramesOfAMachineUp) {
   EXPECT_NE(html.find("8000"), std::string::npos);
   EXPECT_NE(html.find("vertex0 (50 % busy)"), std::string::npos);
   EXPECT_NE(html.find("image/svg+xml"), std::string::npos);
+}
+
+TEST(SweepReport, ThePageDoesWithoutAPlotter) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "", 1);
+  const std::string html = report_of(two_by_two(), machine::load("geforce4-ti4400"), Fidelity::cycle).html();
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(html.find("No curves: gnuplot failed"), std::string::npos);
+  EXPECT_NE(html.find("vertex0 (50 % busy)"), std::string::npos);
 }
 
 }  // namespace
