@@ -8,7 +8,7 @@ namespace {
 
 void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit, const Books& books) {
   result.units.push_back(named_books(machine, unit, books));
-  for (const Statistic& statistic : unit.statistics()) {
+  for (const Statistic& statistic : unit.statistics(kNever)) {
     result.statistics.push_back({unit.name(), std::string(statistic.name), std::string(statistic.unit),
                                  std::string(statistic.what), statistic.value});
   }

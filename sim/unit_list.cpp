@@ -10,7 +10,7 @@ std::vector<UnitStatistic> declared_statistics(const Machine& machine) {
                                    Scheduler::skip_ahead, UnitChoice::all);
   std::vector<UnitStatistic> list;
   for (const auto& unit : built->units) {
-    for (const Statistic& statistic : unit->statistics()) {
+    for (const Statistic& statistic : unit->statistics(kNever)) {
       list.push_back({unit->name(), std::string(statistic.name), std::string(statistic.unit),
                       std::string(statistic.what), statistic.value});
     }

@@ -89,7 +89,7 @@ Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Su
   const double indices = a_quad ? 0 : 3 * static_cast<double>(sums.triangles);
   const double read = a_quad ? vertices / 4 : vertices;
   const double fetched = read * bytes_of_vertex(*job.draw, what_if_);
-  clocks[kFetch] = std::max(indices / machine_.fetch.indices_per_clock, read);
+  clocks[kFetch] = std::max(indices / 3 * whole_clocks(3, machine_.fetch.indices_per_clock), read);
   clocks[kVertex] = vertices * clocks_per_vertex_[job.vertex_program] / machine_.vertex.units;
   if (what_if_.point_sprites) {
     clocks[kPrimitive] /= 2;

@@ -70,9 +70,10 @@ class ThroughputEstimate::State {
                         machine_.memory.cas_clocks + machine_.memory.return_latency;
     const double vertex = static_cast<double>(draws_.vertex_programs[job.vertex_program].size()) *
                           std::max(1, machine_.vertex.vector_latency);
-    const double depth = uses_depth(*job.draw) ? machine_.depth.latency : 0;
+    const bool color = job.draw->state.color_write;  // else a quad ends at the depth test, before its latency
+    const double depth = color && uses_depth(*job.draw) ? machine_.depth.latency : 0;
     const double texture = uses_texture(*job.draw) ? machine_.texture.latency : 0;
-    const double pixels = job.draw->state.color_write ? machine_.pixel.latency : 0;
+    const double pixels = color ? machine_.pixel.latency : 0;
     return 2 * read + vertex + machine_.setup.latency + machine_.raster.latency + depth + texture + pixels;
   }
 

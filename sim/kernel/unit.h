@@ -39,7 +39,8 @@ class Unit {
   Unit& operator=(const Unit&) = delete;
 
   virtual Step advance(Cycle now) = 0;
-  virtual std::vector<Statistic> statistics() const { return {}; }
+  // Up to cycle `now` of its domain, after the last one in which it acted; kNever: all that it began.
+  virtual std::vector<Statistic> statistics(Cycle) const { return {}; }
   // What it holds and waits for, for the dump of a deadlock.
   virtual std::string state() const { return {}; }
 

@@ -223,6 +223,27 @@ TEST(TimeSeries, RowsEndAtMultiplesOfTheInterval) {
   for (std::size_t i = 1; i + 1 < rows.size(); ++i) EXPECT_EQ(rows[i].front(), std::to_string(50 * i));
 }
 
+// Transfers are booked ahead, and counted when the data moves.
+TEST(TimeSeries, NoDataBusIsBusyForLongerThanARow) {
+  for (const unsigned seed : {3u, 7u, 11u, 12u, 13u}) {
+    const Observed run = observe(seed, {}, 4);
+    const Table rows = table_of(run.series);
+    double before = 0;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const double length = std::stod(rows[i].front()) - before;
+      before += length;
+      for (std::size_t k = 0; k < rows[i].size(); ++k) {
+        if (!rows.front()[k].starts_with("memory") || !rows.front()[k].ends_with(".data_clocks")) continue;
+        EXPECT_LE(std::stod(rows[i][k]), length) << "seed " << seed << ", cycle " << rows[i].front();
+      }
+    }
+    for (const Json& event : Json::parse(run.timeline).at("traceEvents")) {
+      if (event.at("ph") != "C" || !event.at("name").get<std::string>().ends_with("data bus")) continue;
+      for (const auto& [name, value] : event.at("args").items()) EXPECT_LE(value.get<int>(), 100) << name;
+    }
+  }
+}
+
 // Cycles that are not visited change nothing: each row is what the referee sees, who visits all of them.
 TEST(TimeSeries, TheRefereeWritesTheSameRows) {
   for (const unsigned seed : {3u, 7u, 11u}) {

@@ -15,7 +15,7 @@ void TimeSeries::begin(const SimulatedMachine& machine) {
   out_ << "cycle";
   for (const auto& unit : machine.units) {
     out_ << ',' << unit->name() << ".busy";
-    for (const Statistic& statistic : unit->statistics()) {
+    for (const Statistic& statistic : unit->statistics(0)) {
       out_ << ',' << unit->name() << '.' << statistic.name;
       statistics_.push_back(0);
     }
@@ -33,7 +33,7 @@ void TimeSeries::row(Cycle end) {
       const Cycle busy = domain->busy(place, end);
       out_ << ',' << static_cast<double>(busy - busy_[unit]) / static_cast<double>(end - last_);
       busy_[unit] = busy;
-      for (const Statistic& entry : domain->units()[place]->statistics()) {
+      for (const Statistic& entry : domain->units()[place]->statistics(domain->first_at(end))) {
         out_ << ',' << entry.value - statistics_[statistic];
         statistics_[statistic++] = entry.value;
       }

@@ -78,8 +78,8 @@ std::string command_tail(const Trace& trace, std::size_t command) {
   return slice_tail(name_of(trace, command));
 }
 
-std::uint64_t data_clocks(const Unit& memory) {
-  const std::vector<Statistic> statistics = memory.statistics();
+std::uint64_t data_clocks(const Unit& memory, Cycle now) {
+  const std::vector<Statistic> statistics = memory.statistics(now);
   return std::ranges::find(statistics, "data_clocks", &Statistic::name)->value;
 }
 
@@ -163,7 +163,7 @@ Cycle Timeline::sample(Cycle now) {
   if (now > window_.last) return kNever;
   if (now < next_sample_) return next_sample_;
   for (std::size_t i = 0; i < buses_.size(); ++i) {
-    const std::uint64_t clocks = data_clocks(*machine_->memory[i]);
+    const std::uint64_t clocks = data_clocks(*machine_->memory[i], now);
     if (now > sampled_at_ && sampled_at_ >= window_.first) {
       count(buses_[i], 100 * (clocks - data_clocks_[i]) / (now - sampled_at_), now);
     }

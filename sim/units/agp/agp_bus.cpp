@@ -17,7 +17,7 @@ bool AgpBus::serve(Cycle now, const Client& client) {
   data_free_ = std::max(now + latency_, data_free_) + std::max<Cycle>(length, 1);
   on_the_way_.push_back(data_free_);
   ++reads_;
-  data_clocks_ += length;
+  data_clocks_.book(now, data_free_ - length, data_free_);
   event(now, data_free_);
   // The core sees the data at its first edge after the last transfer.
   ClockDomain& core = client.port->client().domain();
@@ -43,9 +43,9 @@ Step AgpBus::advance(Cycle now) {
   return busy(std::min(next, on_the_way_.front()));
 }
 
-std::vector<Statistic> AgpBus::statistics() const {
+std::vector<Statistic> AgpBus::statistics(Cycle now) const {
   return {{"reads", "requests", "of host memory", reads_},
-          {"data_clocks", "bus clocks", "in which the bus carried data", data_clocks_}};
+          {"data_clocks", "bus clocks", "in which the bus carried data", data_clocks_.until(now)}};
 }
 
 }  // namespace splatscope::sim

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/machine/machine.h"
+#include "sim/units/memory/data_clocks.h"
 #include "sim/units/memory/memory_port.h"
 
 namespace splatscope::sim {
@@ -16,7 +17,7 @@ class AgpBus final : public Unit {
   void connect(MemoryPort& port, Channel<MemoryRequest>& requests) { clients_.push_back({&port, &requests}); }
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle now) const override;
 
  private:
   struct Client {
@@ -31,7 +32,8 @@ class AgpBus final : public Unit {
   std::size_t turn_ = 0;
   Cycle data_free_ = 0;
   std::deque<Cycle> on_the_way_;  // ends of the requests on the bus
-  std::uint64_t reads_ = 0, data_clocks_ = 0;
+  std::uint64_t reads_ = 0;
+  DataClocks data_clocks_;
 };
 
 }  // namespace splatscope::sim

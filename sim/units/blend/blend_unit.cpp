@@ -42,7 +42,7 @@ bool BlendUnit::enter(Cycle now) {
   return true;
 }
 
-std::vector<Statistic> BlendUnit::statistics() const {
+std::vector<Statistic> BlendUnit::statistics(Cycle) const {
   return {{"quads", "quads", "written", quads_},
           {"misses", "lines", "that the colour cache did not hold", cache_.misses()},
           {"write_backs", "lines", "written to memory", cache_.write_backs()}};

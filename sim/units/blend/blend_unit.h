@@ -13,7 +13,7 @@ class BlendUnit final : public FrameUnit {
             int quads_per_clock);
   void connect(Channel<std::uint32_t>& in, MemoryPort& port, std::uint32_t address);
 
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
 
   // From the command processor: the cache drops the frame's lines.
   void clear() { cache_.invalidate(lines_.lines()); }

@@ -129,7 +129,7 @@ Step CommandProcessor::advance(Cycle now) {
   return busy(now + 1);
 }
 
-std::vector<Statistic> CommandProcessor::statistics() const {
+std::vector<Statistic> CommandProcessor::statistics(Cycle) const {
   return {{"orders", "orders", "draws, clears and cache flushes", orders_},
           {"bytes_filled", "bytes", "written by clears", bytes_filled_}};
 }

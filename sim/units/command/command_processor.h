@@ -37,7 +37,7 @@ class CommandProcessor final : public Unit {
   void set_frame(DepthUnit* depth, bool fast_depth_clear, BlendUnit* blend, std::vector<Surface> cleared);
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
  private:

@@ -65,7 +65,7 @@ bool DepthUnit::enter(Cycle now) {
   return true;
 }
 
-std::vector<Statistic> DepthUnit::statistics() const {
+std::vector<Statistic> DepthUnit::statistics(Cycle) const {
   return {{"tested", "quads", "looked up in the depth cache", tested_},
           {"passed", "quads", "with a pixel that passed", passed_},
           {"misses", "lines", "that the depth cache did not hold", cache_.misses()},

@@ -17,7 +17,7 @@ class DepthUnit final : public FrameUnit {
             int quads_per_clock);
   void connect(Quads& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address);
 
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
 
   // From the command processor: all lines are cleared (`fast`: marked only).
   void clear(bool fast);

@@ -104,7 +104,7 @@ Step Host::advance(Cycle now) {
   return idle();
 }
 
-std::vector<Statistic> Host::statistics() const {
+std::vector<Statistic> Host::statistics(Cycle) const {
   return {{"commands", "commands", "of the trace, done", ends_.size()},
           {"pixels_normalized", "pixels", "read back, divided and written", pixels_}};
 }

@@ -29,7 +29,7 @@ class Host final : public Unit {
   void connect(Channel<Order>& orders, Channel<std::uint32_t>& reports);
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
   bool is_finished() const { return finished_; }

@@ -116,7 +116,7 @@ void MemoryChannel::issue(Cycle now, std::size_t index) {
   Bank& bank = banks_[entry.bank];
   bank.access_from = first - cas_ + length;
   bank.precharge_from = std::max(bank.precharge_from, bus_free_ + (entry.write ? write_recovery_ : 0));
-  data_clocks_ += length;
+  data_clocks_.book(now, first, bus_free_);
   // The next is picked while there is still time to open its row before the data bus is free.
   const Cycle preparation = precharge_ + activate_ + cas_;
   next_issue_ = std::max(now + 1, bus_free_ > preparation ? bus_free_ - preparation : 0);
@@ -151,12 +151,12 @@ Step MemoryChannel::advance(Cycle now) {
   return accepted ? busy(now + 1) : idle(next);
 }
 
-std::vector<Statistic> MemoryChannel::statistics() const {
+std::vector<Statistic> MemoryChannel::statistics(Cycle now) const {
   return {{"reads", "requests", "reads served", reads_},
           {"writes", "requests", "writes served", writes_},
           {"row_hits", "requests", "that found their row open", row_hits_},
           {"row_misses", "requests", "that had to open their row", row_misses_},
-          {"data_clocks", "clocks", "in which the data bus carried data", data_clocks_}};
+          {"data_clocks", "clocks", "in which the data bus carried data", data_clocks_.until(now)}};
 }
 
 std::string MemoryChannel::state() const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/machine/machine.h"
+#include "sim/units/memory/data_clocks.h"
 #include "sim/units/memory/memory_port.h"
 
 namespace splatscope::sim {
@@ -17,7 +18,7 @@ class MemoryChannel final : public Unit {
   void connect(MemoryPort& port, Channel<MemoryRequest>& requests);
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle now) const override;
   std::string state() const override;
 
  private:
@@ -59,7 +60,8 @@ class MemoryChannel final : public Unit {
   bool last_was_write_ = false;
   Cycle next_issue_ = 0;
   Cycle bus_free_ = 0;
-  std::uint64_t reads_ = 0, writes_ = 0, row_hits_ = 0, row_misses_ = 0, data_clocks_ = 0;
+  std::uint64_t reads_ = 0, writes_ = 0, row_hits_ = 0, row_misses_ = 0;
+  DataClocks data_clocks_;
 };
 
 }  // namespace splatscope::sim

@@ -86,7 +86,7 @@ Served serve(const std::vector<Access>& accesses, const Machine::Memory& memory)
     client.port.release_oldest();
   }
   served.written = client.port.writes_done();
-  served.statistics = channel.statistics();
+  served.statistics = channel.statistics(kNever);
   return served;
 }
 
@@ -167,8 +167,8 @@ TEST(MemoryPort, ConsecutiveAddressesGoRoundTheChannels) {
   b.connect(client.port, to_b);
   client.port.connect({&to_a, &to_b}, 64);
   bench.run();
-  EXPECT_EQ(a.statistics()[0].value, 2u);
-  EXPECT_EQ(b.statistics()[0].value, 3u);
+  EXPECT_EQ(a.statistics(kNever)[0].value, 2u);
+  EXPECT_EQ(b.statistics(kNever)[0].value, 3u);
 }
 
 }  // namespace

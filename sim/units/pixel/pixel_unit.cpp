@@ -31,7 +31,7 @@ Step PixelUnit::advance(Cycle now) {
   return busy(free_from_);
 }
 
-std::vector<Statistic> PixelUnit::statistics() const {
+std::vector<Statistic> PixelUnit::statistics(Cycle) const {
   return {{"quads", "quads", "that ran the pixel program", quads_}};
 }
 

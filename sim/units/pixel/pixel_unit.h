@@ -14,7 +14,7 @@ class PixelUnit final : public DrawUnit {
   void connect(const QuadSources& in, Quads& out);
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
 
  private:
   std::uint64_t start(const DrawJob& job) override;

@@ -76,7 +76,7 @@ Step PrimitiveAssembly::advance(Cycle now) {
   return starved(units_[order_->front()]->next_visible());
 }
 
-std::vector<Statistic> PrimitiveAssembly::statistics() const {
+std::vector<Statistic> PrimitiveAssembly::statistics(Cycle) const {
   return {{"assembled", "triangles", "passed to setup", assembled_},
           {"rejected", "triangles", "outside, behind or not finite", rejected_},
           {"clipped", "triangles", "that clipping made more than one of", clipped_}};

@@ -20,7 +20,7 @@ class PrimitiveAssembly final : public DrawUnit {
                Channel<std::uint32_t>& out);
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
   // Called with the triangles done so far, every few thousand.

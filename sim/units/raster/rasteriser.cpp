@@ -59,7 +59,7 @@ Step Rasteriser::advance(Cycle now) {
   return busy(now + 1);
 }
 
-std::vector<Statistic> Rasteriser::statistics() const {
+std::vector<Statistic> Rasteriser::statistics(Cycle) const {
   return {{"quads", "quads", "2x2 quads with coverage", quads_},
           {"tiles", "tiles", "8x8-pixel tiles visited", tiles_},
           {"empty_triangles", "triangles", "that cover no pixel centre", empty_}};

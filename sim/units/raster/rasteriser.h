@@ -22,7 +22,7 @@ class Rasteriser final : public DrawUnit {
   void on_quad(std::function<void(Cycle, const QuadWork&)> on_quad) { on_quad_ = std::move(on_quad); }
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
  private:

@@ -28,7 +28,7 @@ Step TriangleSetup::advance(Cycle now) {
   return busy(free_from_);
 }
 
-std::vector<Statistic> TriangleSetup::statistics() const {
+std::vector<Statistic> TriangleSetup::statistics(Cycle) const {
   return {{"triangles", "triangles", "set up, each piece of a clipped one", triangles_}};
 }
 

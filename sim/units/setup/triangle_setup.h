@@ -14,7 +14,7 @@ class TriangleSetup final : public DrawUnit {
   void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out);
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
 
  private:
   std::uint64_t start(const DrawJob& job) override;

@@ -80,7 +80,7 @@ Step TextureUnit::advance(Cycle now) {
   return moved || lookups != spec_.lookups_per_clock ? busy(now + 1) : waiting(now, out_);
 }
 
-std::vector<Statistic> TextureUnit::statistics() const {
+std::vector<Statistic> TextureUnit::statistics(Cycle) const {
   return {{"quads", "quads", "passed on", quads_},
           {"lookups", "lines", "looked up in the texture cache", cache_.touches()},
           {"misses", "lines", "read from memory", cache_.misses()}};

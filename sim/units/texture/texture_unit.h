@@ -14,7 +14,7 @@ class TextureUnit final : public CachedUnit {
   void connect(const QuadSources& in, Quads& out, MemoryPort& port);
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
 
  private:
   std::uint64_t start(const DrawJob& job) override;

@@ -142,7 +142,7 @@ Step VertexUnit::waiting(Cycle now) {
   return due <= now ? blocked(out_->consumer(), next) : busy(next);
 }
 
-std::vector<Statistic> VertexUnit::statistics() const {
+std::vector<Statistic> VertexUnit::statistics(Cycle) const {
   return {{"vertices", "vertices", "vertices shaded", taken_},
           {"issue_slots", "slots", "instructions issued, a pair as one", slots_}};
 }

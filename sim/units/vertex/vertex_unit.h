@@ -50,7 +50,7 @@ class VertexUnit final : public DrawUnit {
   const DrawJob& drawing() const { return job(); }
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
  private:

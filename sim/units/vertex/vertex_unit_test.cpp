@@ -127,7 +127,7 @@ Outcome run(const Case& test, Scheduler scheduler) {
   const Books books = domain.closed_books(0, kEnd);
   return {sink.arrivals,
           unit.event_hash(),
-          unit.statistics()[0].value,
+          unit.statistics(kNever)[0].value,
           {books.cycles.begin(), books.cycles.begin() + 6}};
 }
 

@@ -184,7 +184,7 @@ Step VertexFetch::waiting(Cycle now) {
   return blocked(index_port_->oldest_server(), next);
 }
 
-std::vector<Statistic> VertexFetch::statistics() const {
+std::vector<Statistic> VertexFetch::statistics(Cycle) const {
   return {{"indices", "indices", "indices taken", indices_read_},
           {"vertices", "vertices", "vertices read", vertices_read_},
           {"line_touches", "lines", "lines of vertices looked up", cache_.touches()},

@@ -27,7 +27,7 @@ class VertexFetch final : public DrawUnit {
   void set_places(std::vector<MemoryPlace> places) { places_ = std::move(places); }
 
   Step advance(Cycle now) override;
-  std::vector<Statistic> statistics() const override;
+  std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
  private:
