@@ -283,6 +283,15 @@ TEST_F(PointFileTest, RadiusAndNormalAreEstimated) {
             "none left out, 81 normals estimated, 81 radii estimated");
 }
 
+TEST_F(PointFileTest, ADuplicateIsOneWhateverItsNormalsLength) {
+  const Scene scene = scene_of(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float radius\nend_header\n"
+      "1 1 1 0 0 1 1\n1 1 1 0 0 2 1\n1 1 1 0 0 -1 1\n2 1 1 0 0 1 1\n");
+  EXPECT_EQ(scene.skipped.duplicate, 1u);
+  EXPECT_EQ(scene.surfels.size(), 3u);
+}
+
 TEST_F(PointFileTest, PointsOnOnePlaceOrLineAreLeftOut) {
   const auto file = [](int count, std::string_view rows) {
     return fmt::format(

@@ -35,18 +35,29 @@ bool normalize(Surfel& s) {
   return length > 0;
 }
 
-// The later ones of those at the same position with the same normal: their splats would count twice.
+// The later ones of those at the same position with a normal of the same direction: their splats would count
+// twice.
 std::size_t erase_duplicates(std::vector<Surfel>& surfels) {
-  const auto key = [&](std::uint32_t i) {
-    const Surfel& s = surfels[i];
-    return std::tie(s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z);
+  const auto place = [&](std::uint32_t i) {
+    return std::tie(surfels[i].position.x, surfels[i].position.y, surfels[i].position.z);
+  };
+  const auto direction = [&](std::uint32_t i) {
+    Surfel s = surfels[i];
+    normalize(s);
+    return std::tuple(s.normal.x, s.normal.y, s.normal.z);
+  };
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    return place(a) == place(b) && direction(a) == direction(b);
   };
   std::vector<std::uint32_t> order(surfels.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(
-      order, [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    if (place(a) != place(b)) return place(a) < place(b);
+    const auto da = direction(a), db = direction(b);
+    return da != db ? da < db : a < b;
+  });
   std::vector<char> repeated(surfels.size(), 0);
-  for (std::size_t i = 1; i < order.size(); ++i) repeated[order[i]] = key(order[i]) == key(order[i - 1]);
+  for (std::size_t i = 1; i < order.size(); ++i) repeated[order[i]] = same(order[i], order[i - 1]);
   std::size_t i = 0;
   return std::erase_if(surfels, [&](const Surfel&) { return repeated[i++] != 0; });
 }

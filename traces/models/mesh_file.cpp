@@ -21,19 +21,24 @@
 namespace splatscope::traces {
 namespace {
 
-// What colours the parts of a mesh file, by the number of their material.
+// What colours the parts of a mesh file. Some may have colours or places in a texture, and others none.
 struct Materials {
   struct Material {
     glm::vec3 color{0.85f};
     std::optional<TextureImage> texture;
   };
+  struct Part {
+    std::size_t material = 0;
+    bool texcoords = false, colors = false;
+  };
   std::vector<Material> materials;
-  bool vertex_colors = false;
+  std::vector<Part> parts;
 
   glm::vec3 operator()(const SurfacePoint& point) const {
-    const Material& material = materials[point.part];
-    if (material.texture) return material.texture->at(point.texcoord);
-    return vertex_colors ? point.color : material.color;
+    const Part& part = parts[point.part];
+    const Material& material = materials[part.material];
+    if (material.texture && part.texcoords) return material.texture->at(point.texcoord);
+    return part.colors ? point.color : material.color;
   }
 };
 
@@ -71,7 +76,7 @@ class Reader {
     if (mesh.triangles.empty()) throw UserError(path_.string(), 0, "holds no triangles, expected a mesh");
     if (!any_normals_) mesh.normals.clear();
     if (!any_texcoords_) mesh.texcoords.clear();
-    if (!materials_->vertex_colors) mesh.colors.clear();
+    if (!any_colors_) mesh.colors.clear();
     file_.model.paint = [materials = materials_](const SurfacePoint& point) { return (*materials)(point); };
     return std::move(file_);
   }
@@ -129,7 +134,7 @@ class Reader {
     const bool texcoords = from.HasTextureCoords(0), colors = from.HasVertexColors(0);
     any_normals_ |= from.HasNormals();
     any_texcoords_ |= texcoords;
-    materials_->vertex_colors |= colors;
+    any_colors_ |= colors;
     for (unsigned i = 0; i < from.mNumVertices; ++i) {
       const aiVector3D p = transform * from.mVertices[i];
       const aiVector3D n = from.HasNormals() ? turn * from.mNormals[i] : aiVector3D();
@@ -141,12 +146,17 @@ class Reader {
                                 ? glm::vec3(from.mColors[0][i].r, from.mColors[0][i].g, from.mColors[0][i].b)
                                 : glm::vec3(0.85f));
     }
-    const auto last_material = static_cast<std::uint32_t>(materials_->materials.size() - 1);
+    const auto part = static_cast<std::uint32_t>(materials_->parts.size());
+    const std::size_t last_material = materials_->materials.size() - 1;
+    materials_->parts.push_back(
+        {std::min<std::size_t>(from.mMaterialIndex, last_material), texcoords, colors});
+    const bool mirrored = aiMatrix3x3(transform).Determinant() < 0;  // front faces stay front faces
     for (unsigned i = 0; i < from.mNumFaces; ++i) {
       const aiFace& face = from.mFaces[i];
       if (face.mNumIndices != 3) continue;  // points and lines have no surface
-      mesh.triangles.push_back({face.mIndices[0] + base, face.mIndices[1] + base, face.mIndices[2] + base});
-      mesh.parts.push_back(std::min(from.mMaterialIndex, last_material));
+      mesh.triangles.push_back({face.mIndices[0] + base, face.mIndices[mirrored ? 2 : 1] + base,
+                                face.mIndices[mirrored ? 1 : 2] + base});
+      mesh.parts.push_back(part);
     }
   }
 
@@ -154,7 +164,7 @@ class Reader {
   const aiScene& scene_;
   MeshFile file_;
   std::shared_ptr<Materials> materials_ = std::make_shared<Materials>();
-  bool any_normals_ = false, any_texcoords_ = false;
+  bool any_normals_ = false, any_texcoords_ = false, any_colors_ = false;
 };
 
 // Faces with an index beyond the vertices become faces of nothing. Returns how many; tells of larger

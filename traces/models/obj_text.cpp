@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstddef>
 #include <fstream>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -85,6 +86,11 @@ class ObjText {
     if (has_numbers_) read_numbers(at, end);
     if (is_place_ && !continued_ && numbers_ != 3 && numbers_ != 4 && numbers_ != 6)
       fail(fmt::format("a vertex of {} number{}", numbers_, numbers_ == 1 ? "" : "s"), "3, 4 or 6");
+    if (!is_place_ || continued_) return;
+    const bool colored = numbers_ == 6;
+    if (colored_.value_or(colored) != colored)  // assimp would make the others black
+      fail("vertices with colours beside ones without", "colours for all or for none");
+    colored_ = colored;
   }
 
   void read_numbers(std::size_t at, std::size_t end) {
@@ -105,7 +111,8 @@ class ObjText {
   std::string_view text_, file_;
   int line_ = 0;
   bool continued_ = false, has_numbers_ = false, is_place_ = false;
-  std::size_t numbers_ = 0;  // of the line
+  std::optional<bool> colored_;  // the vertices before
+  std::size_t numbers_ = 0;      // of the line
   std::string result_;
   std::size_t copied_ = 0;  // of the text; 0: nothing had to change
 };
