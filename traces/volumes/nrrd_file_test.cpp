@@ -85,6 +85,24 @@ TEST_F(NrrdFile, ReadsRawDataBesideAHeader) {
             "b.raw: cannot be read, expected the raw data that the header names");
 }
 
+// "Field identifiers are not case sensitive", and some have a spelling without a blank.
+TEST_F(NrrdFile, FieldsAreReadInAnySpelling) {
+  const auto spacing = [&](const std::string& field) {
+    return read_nrrd(write("a.nrrd", header("uint8", "1 1 1", field) + "1")).spacing;
+  };
+  for (const char* field :
+       {"Spacings: 1 2 3\n", "SPACE DIRECTIONS: (1,0,0) (0,2,0) (0,0,3)\n",
+        "spacedirections: (1,0,0) (0,2,0) (0,0,3)\n", "spacings: 1 2 3\naxis mins: 0 0 0\n"})
+    EXPECT_EQ(spacing(field), glm::dvec3(1, 2, 3)) << field;
+  write("a.raw", "skip\7");
+  EXPECT_EQ(read_nrrd(write("a.nhdr", header("uint8", "1 1 1", "Data File: a.raw\nBYTE SKIP: 4\n"))).values,
+            std::vector<float>{7});
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "Axis Maxs: 1 1 1\n")),
+            "a.nrrd:10: axis mins or maxs without spacings, expected spacings");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "data file: a.raw\ndatafile: a.raw\n")),
+            "a.nrrd:10: \"datafile\" for the second time, expected it once, as in line 9");
+}
+
 TEST_F(NrrdFile, NamesTheLineOfWhatIsWrong) {
   EXPECT_EQ(error_of("PLY\n"), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
   EXPECT_EQ(error_of(""), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");

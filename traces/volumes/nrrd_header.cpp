@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <istream>
 #include <map>
@@ -55,10 +56,11 @@ class Reader {
       const std::size_t colon = line_.find(':');
       if (colon == line_.npos) fail("a line without a colon", "\"field: value\"");
       if (line_.substr(colon).starts_with(":=")) continue;  // a key of the writer's own
-      const std::string name(trimmed(std::string_view(line_).substr(0, colon)));
+      const std::string_view field = trimmed(std::string_view(line_).substr(0, colon));
+      const std::string name = identifier(field);
       const auto [place, is_new] = lines_.emplace(name, number_);
       if (!is_new)
-        fail(fmt::format("\"{}\" for the second time", shown(name)),
+        fail(fmt::format("\"{}\" for the second time", shown(field)),
              fmt::format("it once, as in line {}", place->second));
       read_field(name, trimmed(std::string_view(line_).substr(colon + 1)));
     }
@@ -69,6 +71,13 @@ class Reader {
  private:
   [[noreturn]] void fail(std::string_view what, std::string_view expected) const {
     throw UserError(file_, number_, fmt::format("{}, expected {}", what, expected));
+  }
+  // Fields are written in small letters or large, some with a blank or without.
+  static std::string identifier(std::string_view field) {
+    std::string name(field);
+    std::erase(name, ' ');
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name;
   }
   static std::string shown(std::string_view text) {
     std::string copy(text.substr(0, 40));
@@ -105,11 +114,11 @@ class Reader {
       if (value != expected) fail(fmt::format("dimension is \"{}\"", shown(value)), expected);
     } else if (name == "sizes") {
       read_sizes(value);
-    } else if (header_.components > 1 && (name == "spacings" || name == "space directions")) {
+    } else if (header_.components > 1 && (name == "spacings" || name == "spacedirections")) {
       return;
     } else if (name == "spacings") {
       read_spacings(value);
-    } else if (name == "space directions") {
+    } else if (name == "spacedirections") {
       read_directions(value);
     } else if (name == "encoding") {
       if (value != "raw")
@@ -118,17 +127,17 @@ class Reader {
       if (value != "big" && value != "little")
         fail(fmt::format("endian is \"{}\"", shown(value)), "big or little");
       header_.big_endian = value == "big";
-    } else if (name == "data file" || name == "datafile") {
+    } else if (name == "datafile") {
       if (value.empty() || value.starts_with("LIST") || value.find('%') != value.npos) {
         fail(fmt::format("data file is \"{}\"", shown(value)), "the name of one file");
       }
       header_.data_file = std::string(value);
-    } else if (name == "byte skip" || name == "byteskip") {
+    } else if (name == "byteskip") {
       const auto skip = number_of<std::uint32_t>(value);
       if (!skip)
         fail(fmt::format("byte skip is \"{}\"", shown(value)), "a whole number from 0 to 4294967295");
       header_.skip = *skip;
-    } else if (name == "line skip" || name == "lineskip") {
+    } else if (name == "lineskip") {
       if (value != "0") fail(fmt::format("line skip is \"{}\"", shown(value)), "0");
     }
   }
@@ -200,6 +209,10 @@ class Reader {
   }
 
   void finish() const {
+    const bool placed = lines_.contains("axismins") || lines_.contains("axismaxs");
+    if (header_.components == 1 && placed && !lines_.contains("spacings") &&
+        !lines_.contains("spacedirections"))
+      fail("axis mins or maxs without spacings", "spacings");
     for (const char* name : {"type", "dimension", "sizes", "encoding"}) {
       if (!lines_.contains(name)) fail(fmt::format("the header ends without \"{}\"", name), "that field");
     }
