@@ -299,7 +299,7 @@ class Recorder {
       most_quads_ = std::max(most_quads_, count);
       result_.trace.commands.emplace_back(draw);
     }
-    if (kind == kOwnVariance) result_.flat += numbers.size();
+    for (const std::uint32_t k : numbers) result_.flat += voxels_[k].flat;
   }
 
   // `weight`: what the vertices' opacity is relative to.
