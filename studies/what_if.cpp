@@ -66,10 +66,10 @@ traces::Scene scene_with(traces::Scene scene, const Hardware& hardware, Algorith
     scene.splatting.visibility_program = "corner";
     scene.splatting.ewa_program = "facing";
   }
-  if (hardware.geometry == Geometry::point_sprites) {  // its quads are the sprites' squares
-    for (traces::Surfel& surfel : scene.surfels) {
-      surfel.normal = glm::vec3(glm::normalize(scene.camera.eye - glm::dvec3(surfel.position)));
-    }
+  if (hardware.geometry ==
+      Geometry::point_sprites) {  // across the camera's axis quads are the sprites' squares
+    const glm::vec3 normal(glm::normalize(scene.camera.eye - scene.camera.target));
+    for (traces::Surfel& surfel : scene.surfels) surfel.normal = normal;
   }
   return scene;
 }

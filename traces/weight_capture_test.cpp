@@ -51,7 +51,7 @@ std::vector<Surfel> jittered_square(int edge, unsigned seed) {
   return surfels;
 }
 
-// A sphere of radius 1; `inside` adds one of half the radius, which the outer one hides from every side.
+// Points spread evenly over a sphere.
 std::vector<Surfel> sphere(int count, double radius) {
   std::vector<Surfel> surfels;
   for (int i = 0; i < count; ++i) {
@@ -145,6 +145,7 @@ TEST(WeightCapture, ViewsLeftOutChangeNoWeight) {
   EXPECT_GT(few.at_edges, 8u);
 }
 
+// The outer sphere hides the inner one from every side.
 TEST(WeightCapture, UnseenSurfelsHaveTheMedianAndAreCounted) {
   std::vector<Surfel> surfels = sphere(1500, 1);
   const std::vector<Surfel> inside = sphere(200, 0.5);
