@@ -20,4 +20,12 @@ Machine machine_of(const std::string& name, const std::vector<std::string>& sett
   return machine;
 }
 
+std::vector<traces::NamedFile> named_files(const std::string& input, const std::string& machine,
+                                           const std::vector<std::string>& programs) {
+  std::vector<traces::NamedFile> files{{"INPUT", input}, {"--machine", machine}};
+  for (const std::string& program : programs)
+    files.push_back({"--program", program.substr(program.find('=') + 1)});
+  return files;
+}
+
 }  // namespace splatscope::app

@@ -103,9 +103,8 @@ bool simulates_cycles(studies::Fidelity fidelity) {
 
 // That no file of the command line is written over another, nor over one of `files`.
 void expect_apart(const Options& options, std::vector<traces::NamedFile> files) {
-  files.insert(files.end(), {{"INPUT", options.input}, {"--machine", options.machine}});
-  for (const std::string& program : options.programs)
-    files.push_back({"--program", program.substr(program.find('=') + 1)});
+  const auto named = named_files(options.input, options.machine, options.programs);
+  files.insert(files.end(), named.begin(), named.end());
   const studies::ObserveOptions& observe = options.observe;
   for (const auto& [what, path] : {std::pair{"--timeline", &observe.timeline},
                                    {"--pipeline", &observe.pipeline},

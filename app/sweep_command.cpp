@@ -41,10 +41,8 @@ void print(const studies::Sweep& sweep) {
 }
 
 void run(const Options& options, bool quiet) {
-  std::vector<traces::NamedFile> read{{"INPUT", options.input}, {"--machine", options.machine}};
-  for (const std::string& program : options.programs)
-    read.push_back({"--program", program.substr(program.find('=') + 1)});
-  studies::expect_apart_from_results(read, options.out);
+  studies::expect_apart_from_results(named_files(options.input, options.machine, options.programs),
+                                     options.out);
   const Machine machine = machine_of(options.machine, options.settings);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   const auto swept = studies::swept_parameters(options.swept, options.settings);

@@ -178,10 +178,9 @@ Effects effects_of(const Program& program, const Instruction& instruction) {
   }
   const Destination& destination = instruction.destination;
   const Opcode opcode = instruction.opcode;
-  const bool reads_destination = opcode == texdepth || (opcode == texkill && program.version.minor == 4);
   effects.side_effect = opcode == texkill || opcode == texdepth || opcode == texm3x2depth;
-  if (reads_destination)
-    include(effects.reads, destination.file, destination.index, opcode == texdepth ? 0x3 : 0x7);
+  if (program.version.minor == 4)  // before, texkill looks at coordinates
+    include(effects.reads, destination.file, destination.index, destination_components_read(opcode));
   if (opcode == texm3x2pad || opcode == texm3x3pad) {
     effects.writes.set(kFirstRow + destination.index);
     return effects;

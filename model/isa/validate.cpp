@@ -80,6 +80,10 @@ unsigned components_read(const Instruction& instruction, int source) {
   return components;
 }
 
+unsigned destination_components_read(Opcode opcode) {
+  return opcode == Opcode::texdepth ? 0x3 : opcode == Opcode::texkill ? 0x7 : 0;
+}
+
 void check_read_ports(const Program& program, const Instruction& instruction, RegisterFile file, int ports) {
   std::vector<std::pair<bool, int>> distinct;  // relative or not, index
   for (int i = 0; i < instruction.source_count; ++i) {

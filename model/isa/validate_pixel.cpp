@@ -294,10 +294,9 @@ class PixelValidator {
         check_texture_register(instruction, source.index, read);
       }
     }
-    const bool reads_destination = instruction.opcode == texdepth || instruction.opcode == texkill;
-    if (version_1_4_ && reads_destination && instruction.destination.file == RegisterFile::temporary)
-      check_temporary(instruction, instruction.destination.index, instruction.opcode == texdepth ? 0x3 : 0x7,
-                      written_);
+    const unsigned read = destination_components_read(instruction.opcode);
+    if (version_1_4_ && read != 0 && instruction.destination.file == RegisterFile::temporary)
+      check_temporary(instruction, instruction.destination.index, read, written_);
   }
 
   // Of a source or destination: what has become the depth is no register any more.
