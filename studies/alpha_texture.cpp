@@ -155,7 +155,7 @@ int least_length(double cutoff) {
 std::vector<TextureRow> texture_rows(const traces::Scene& scene, std::span<const int> lengths,
                                      const Machine& machine) {
   const Machine exact = with_frame(machine, FrameFormat::float32);
-  const kernels::ReferencePicture reference = scene_reference(scene);
+  const kernels::SplatSums reference = single_surface_reference(scene);
   std::vector<TextureRow> rows;
   traces::Scene changed = scene;
   for (const int length : lengths) {

@@ -11,7 +11,6 @@
 #include <numbers>
 
 #include "kernels/object_space_ewa/alpha_texture.h"
-#include "kernels/reference/ewa_reference.h"
 #include "model/machine/machine.h"
 #include "model/render.h"
 #include "studies/picture_quality.h"
@@ -27,7 +26,7 @@ constexpr double kFullCutoff = 8;  // exp(-8) is a tenth of 1/255
 kernels::SplatSums sums_of(traces::Scene scene, double cutoff, bool circular, bool one_surface) {
   scene.splatting.cutoff = cutoff;
   scene.splatting.circular_cutoff = circular;
-  if (one_surface) return scene_reference(scene);
+  if (one_surface) return single_surface_reference(scene);
   return screen_space_reference(scene, kernels::ScreenMap::perspective);
 }
 
@@ -207,7 +206,7 @@ std::vector<OverlapRow> overlap_rows(std::span<const double> overlaps, int frame
       surfel.radius = static_cast<float>(std::sqrt(count / (2 * std::numbers::pi)));
       surfel.color = {1, 1, 1};
     }
-    const kernels::SplatSums sums = scene_reference(plane.scene);  // of weights gamma
+    const kernels::SplatSums sums = single_surface_reference(plane.scene);  // of weights gamma
     const double median = median_weight(sums);
     const double weight = kBrightness / median * plane.scene.splatting.gamma;
     for (const Buffer& buffer : buffers) {

@@ -24,13 +24,6 @@ double median_weight(const kernels::SplatSums& reference) {
 
 namespace {
 
-kernels::ReferenceSettings filter_of(const traces::Scene& scene) {
-  return {
-      .prefilter = true,
-      .cutoff = scene.splatting.cutoff,
-      .shape = scene.splatting.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square};
-}
-
 constexpr double kHalfStep = 0.5 / 255;  // of 8 bits
 
 // Mean square of differences as decibels.
@@ -123,13 +116,18 @@ std::vector<kernels::Surfel> reference_surfels(const traces::Scene& scene) {
   return surfels;
 }
 
-kernels::ReferencePicture scene_reference(const traces::Scene& scene, const Leave& leave) {
-  kernels::ReferenceSettings settings = filter_of(scene);
-  settings.cutoff_tolerance = leave.cutoff_tolerance;
-  settings.edge_tolerance = leave.edge_tolerance;
-  settings.texture_length = leave.eight_bit_texels ? traces::texture_length(scene.splatting) : 0;
-  return kernels::ewa_reference(traces::view_of(scene.camera, scene.frame), reference_surfels(scene),
-                                settings);
+kernels::ReferenceSettings filter_of(const traces::Scene& scene) {
+  return {
+      .prefilter = true,
+      .cutoff = scene.splatting.cutoff,
+      .shape = scene.splatting.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square};
+}
+
+kernels::SplatSums single_surface_reference(const traces::Scene& scene) {
+  return kernels::screen_space_ewa(traces::view_of(scene.camera, scene.frame), reference_surfels(scene),
+                                   {.filter = filter_of(scene),
+                                    .map = kernels::ScreenMap::perspective,
+                                    .depth_offset = std::numeric_limits<double>::infinity()});
 }
 
 kernels::ScreenMap screen_map_by_name(std::string_view name) {
@@ -227,26 +225,6 @@ Image difference_picture(const Frame& frame, const kernels::SplatSums& reference
     }
   }
   return image;
-}
-
-SurfaceAgreement agreement(const Frame& frame, const kernels::ReferencePicture& reference) {
-  const double half = 0.5 * median_weight(reference);
-  SurfaceAgreement both;
-  for (std::size_t pixel = 0; pixel < reference.coverage.size(); ++pixel) {
-    if (reference.coverage[pixel] != kernels::Coverage::certain) continue;
-    Agreement& out = reference.sums[pixel].w < half ? both.fringe : both.surface;
-    ++out.pixels;
-    const Vec4 color = frame.color(pixel);
-    double distance = 0;  // 1/255
-    for (int c = 0; c < 3; ++c) {
-      const double value = color[static_cast<std::size_t>(c)];
-      distance = std::max({distance, 255 * (reference.lowest[pixel][c] - value),
-                           255 * (value - reference.highest[pixel][c])});
-    }
-    out.outside += distance > 0.5;
-    out.worst = std::max(out.worst, distance);
-  }
-  return both;
 }
 
 }  // namespace splatscope::studies

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "kernels/reference/ewa_reference.h"
 #include "kernels/reference/screen_space.h"
 #include "model/output/frame.h"
 #include "studies/image_io.h"
@@ -16,19 +15,14 @@
 // A simulated picture against the double-precision reference of the same scene.
 namespace splatscope::studies {
 
-// What a picture is given leave for, beside half a step of 8 bits: see kernels::ReferenceSettings.
-struct Leave {
-  double cutoff_tolerance = 0;    // y: where the circular cutoff is decided on texels
-  double edge_tolerance = 0;      // y: where edges move to the rasteriser's grid
-  bool eight_bit_texels = false;  // the value of a splat is that of an 8-bit texel, not the Gaussian's
-};
-
 // The scene's surfels as the references take them: s_k is gamma for each.
 std::vector<kernels::Surfel> reference_surfels(const traces::Scene& scene);
 
-// The reference of a scene that shows a single surface: with the EWA prefilter whatever its algorithm,
-// normalised per pixel.
-kernels::ReferencePicture scene_reference(const traces::Scene& scene, const Leave& leave = {});
+// The filter of Eq. 8 as the scene cuts it off, with the prefilter whatever its algorithm.
+kernels::ReferenceSettings filter_of(const traces::Scene& scene);
+
+// The reference of a scene that shows a single surface, by Eq. 8: every surfel counts, none hides another.
+kernels::SplatSums single_surface_reference(const traces::Scene& scene);
 
 // "affine" or "perspective". Throws UserError (file "--reference") for another name.
 kernels::ScreenMap screen_map_by_name(std::string_view name);
@@ -92,19 +86,5 @@ Image picture_of(const kernels::SplatSums& reference);
 
 // Mid-grey where the frame agrees with the reference; 16 times their difference about it.
 Image difference_picture(const Frame& frame, const kernels::SplatSums& reference);
-
-struct Agreement {
-  std::size_t pixels = 0;   // with splats that certainly count
-  std::size_t outside = 0;  // of these: further than 0.5/255 from the reference's bounds
-  double worst = 0;         // distance from the bounds, in 1/255
-};
-
-// How far the picture is from what the reference allows, given either way for splats whose edge passes within
-// the reference's tolerance of a pixel's centre: on the surface (as for psnr), and on the fringe of splats
-// beyond it, where so few overlap that the rounding of the 8-bit texture shows.
-struct SurfaceAgreement {
-  Agreement surface, fringe;
-};
-SurfaceAgreement agreement(const Frame& frame, const kernels::ReferencePicture& reference);
 
 }  // namespace splatscope::studies

@@ -58,7 +58,7 @@ std::vector<double> psnr_by_program(Drawing drawing, std::span<const std::string
 
 std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const std::string_view> names,
                                      Fidelity fidelity, int surfels, const Progress& progress) {
-  const kernels::ReferencePicture reference = scene_reference(scene);
+  const kernels::SplatSums reference = single_surface_reference(scene);
   traces::Scene one_weight = scene;
   one_weight.capture.corner_weights = false;
   // In binary32: what the program itself does to the picture.

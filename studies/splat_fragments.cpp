@@ -33,11 +33,10 @@ class Fragments {
         surface_(surface),
         surfels_(reference_surfels(scene)),
         depth_offset_(scene.splatting.depth_offset),
+        filter_(filter_of(scene)),
         splats_(surfels_.size()) {
-    const traces::Splatting& splatting = scene.splatting;
-    filter_.cutoff = splatting.cutoff;
-    filter_.shape = splatting.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
-    for (std::size_t k = 0; k < surfels_.size(); ++k) prepare(surfels_[k], splatting.algorithm, splats_[k]);
+    for (std::size_t k = 0; k < surfels_.size(); ++k)
+      prepare(surfels_[k], scene.splatting.algorithm, splats_[k]);
   }
 
   // Nothing where the fragment is beyond the cutoff.

@@ -117,7 +117,7 @@ sim::WhatIf what_if_of(const Hardware& hardware, const Trace& trace) {
 class Drawings {
  public:
   Drawings(const traces::Scene& scene, std::string_view machine)
-      : scene_(scene), machine_(machine), reference_(scene_reference(scene)) {}
+      : scene_(scene), machine_(machine), reference_(single_surface_reference(scene)) {}
 
   struct Drawing {
     Trace trace;
@@ -155,7 +155,7 @@ class Drawings {
 
   const traces::Scene& scene_;
   std::string machine_;
-  kernels::ReferencePicture reference_;
+  kernels::SplatSums reference_;
   std::map<Key, Drawing> drawings_;
   std::map<std::pair<FrameFormat, bool>, traces::CapturedWeights> weights_;
 };
@@ -196,7 +196,7 @@ WhatIfPicture what_if_picture(const traces::Scene& scene, std::string_view machi
   const traces::Scene changed = scene_with(scene, hardware, algorithm);
   const Machine with = machine_with(machine, hardware);
   const Frame frame = draw_frame(changed, with);
-  return {picture_of(frame), psnr(frame, scene_reference(scene))};
+  return {picture_of(frame), psnr(frame, single_surface_reference(scene))};
 }
 
 std::string header_of_what_ifs() {

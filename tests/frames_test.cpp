@@ -6,9 +6,11 @@
 #include <numbers>
 #include <numeric>
 
+#include "ewa_bounds.h"
 #include "kernels/object_space_ewa/alpha_texture.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
+#include "traces/splat_trace.h"
 
 namespace splatscope::studies {
 namespace {
@@ -44,10 +46,13 @@ NumberFormats float_formats() {
 }
 
 // Half a diagonal of the 1/16-pixel grid, and a texel of the alpha texture: one pixel moves y by at most 1.
-Leave grid_and_texel(bool eight_bit_texels) {
-  return {.cutoff_tolerance = 2 * std::numbers::sqrt2 / kernels::optimal_length(1),
-          .edge_tolerance = std::numbers::sqrt2 / 32,
-          .eight_bit_texels = eight_bit_texels};
+tests::SurfaceAgreement agreement(const Frame& frame, const traces::Scene& scene, bool eight_bit_texels) {
+  const tests::Leave leave{.cutoff_tolerance = 2 * std::numbers::sqrt2 / kernels::optimal_length(1),
+                           .edge_tolerance = std::numbers::sqrt2 / 32,
+                           .texture_length = eight_bit_texels ? traces::texture_length(scene.splatting) : 0};
+  return tests::agreement(frame, single_surface_reference(scene),
+                          tests::ewa_bounds(traces::view_of(scene.camera, scene.frame),
+                                            reference_surfels(scene), filter_of(scene), leave));
 }
 
 // The proof of the function: with float arithmetic and frame buffer only the 8-bit texture and the edges'
@@ -55,16 +60,17 @@ Leave grid_and_texel(bool eight_bit_texels) {
 TEST(Frames, FloatPictureIsTheReference) {
   const traces::Scene scene = paper_scene(traces::Algorithm::ewa_per_pixel);
   const Frame frame = drawn(scene, float_formats()).frame;
-  const SurfaceAgreement exact = agreement(frame, scene_reference(scene, grid_and_texel(false)));
+  const tests::SurfaceAgreement exact = agreement(frame, scene, false);
   EXPECT_GT(exact.surface.pixels, 60000u);
   EXPECT_EQ(0u, exact.surface.outside) << "worst " << exact.surface.worst << "/255";
-  const SurfaceAgreement with_texels = agreement(frame, scene_reference(scene, grid_and_texel(true)));
+  const tests::SurfaceAgreement with_texels = agreement(frame, scene, true);
   EXPECT_EQ(0u, with_texels.surface.outside + with_texels.fringe.outside)
       << "worst " << with_texels.surface.worst << ", " << with_texels.fringe.worst << " /255";
 }
 
 TEST(Frames, EightBitPicturesComeNearTheReference) {
-  const kernels::ReferencePicture reference = scene_reference(paper_scene(traces::Algorithm::ewa_per_pixel));
+  const kernels::SplatSums reference =
+      single_surface_reference(paper_scene(traces::Algorithm::ewa_per_pixel));
   for (const char* name : {"geforce4-ti4400", "radeon-8500"}) {
     const NumberFormats formats = machine::load(name).numbers;
     const auto decibels = [&](traces::Algorithm algorithm) {

@@ -20,9 +20,9 @@ enum class ScreenMap : std::uint8_t {
 };
 
 struct ScreenSpaceSettings {
-  ReferenceSettings filter;  // prefilter, cutoff and its shape; tolerances and texture do not count
+  ReferenceSettings filter;
   ScreenMap map = ScreenMap::affine;
-  double depth_offset = 0;       // z_t of section 5.1, camera-space units, >= 0
+  double depth_offset = 0;       // z_t of section 5.1, camera-space units, >= 0; INFINITY: nothing is hidden
   bool cull_back_faces = false;  // surfels whose normal s x t points away from the eye are left out
 };
 

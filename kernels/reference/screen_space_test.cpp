@@ -9,7 +9,6 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
-#include "kernels/reference/ewa_reference.h"
 #include "kernels/reference/random_surfels.h"
 
 namespace splatscope::kernels {
@@ -96,12 +95,13 @@ glm::dvec4 brute_force(const View& view, const std::vector<Surfel>& surfels,
   double depth = INFINITY;
   for (const Surfel& surfel : surfels) {
     const Hit at = hit(view, surfel, x);
-    if (!surfel_filter(view, surfel, true) || !in_range(at.z) || !in_range(at.z + shift)) continue;
+    if (!surfel_filter(view, surfel, settings.filter.prefilter) || !in_range(at.z) || !in_range(at.z + shift))
+      continue;
     if (std::max(std::abs(at.u.x), std::abs(at.u.y)) <= 1) depth = std::min(depth, at.z + shift);
   }
   glm::dvec4 sum(0.0);
   for (const Surfel& surfel : surfels) {
-    const auto filter = surfel_filter(view, surfel, true);
+    const auto filter = surfel_filter(view, surfel, settings.filter.prefilter);
     const Hit at = hit(view, surfel, x);
     if (!filter || !in_range(at.z) || at.z > depth) continue;
     const glm::dmat2& j = filter->jacobian;
@@ -109,31 +109,37 @@ glm::dvec4 brute_force(const View& view, const std::vector<Surfel>& surfels,
     const glm::dvec2 from_center = affine ? x - view.window(view.camera_space(surfel.position)) : at.u;
     const glm::dmat2 variance =
         affine ? surfel.sigma * surfel.sigma * j * glm::transpose(j) + glm::dmat2(1.0) : filter->variance;
-    if (glm::dot(from_center, glm::inverse(variance) * from_center) > 2 * settings.filter.cutoff) continue;
+    const glm::dvec2 y = glm::inverse(affine ? j * filter->axes : filter->axes) * from_center;
+    const double squared = settings.filter.shape == CutoffShape::square
+                               ? std::max(y.x * y.x, y.y * y.y)
+                               : glm::dot(from_center, glm::inverse(variance) * from_center);
+    if (squared > 2 * settings.filter.cutoff) continue;
     const double scale = affine ? std::abs(glm::determinant(j)) : 1.0;  // 1/|J^-1|
     sum += surfel.weight * scale * gaussian(variance, from_center) * glm::dvec4(surfel.color, 1.0);
   }
   return sum;
 }
 
-void compare_with_brute_force(ScreenMap map, std::uint32_t seed) {
+void compare_with_brute_force(ScreenMap map, const ReferenceSettings& filter, std::uint32_t seed) {
   std::printf("seed %u\n", seed);
   std::mt19937 generator(seed);
   const View view = test_view();
   const std::vector<Surfel> surfels = random_surfels(200, generator);
-  ScreenSpaceSettings settings = settings_of(map, 1.5);
-  settings.depth_offset = 0.2;
-  const ScreenSpacePicture picture = screen_space_ewa(view, surfels, settings);
-  settings.depth_offset = 100;
-  const ScreenSpacePicture unoccluded = screen_space_ewa(view, surfels, settings);
-  settings.depth_offset = 0.2;
+  // Hidden surfels count where z_t is infinite.
+  const ScreenSpaceSettings some{.filter = filter, .map = map, .depth_offset = 0.2},
+      all{.filter = filter, .map = map, .depth_offset = INFINITY};
+  const ScreenSpacePicture picture = screen_space_ewa(view, surfels, some),
+                           unoccluded = screen_space_ewa(view, surfels, all);
   int lit = 0, occluded = 0;
   for (int row = 0; row < view.height; ++row) {
     for (int column = 0; column < view.width; ++column) {
       const auto pixel = static_cast<std::size_t>(row * view.width + column);
-      const glm::dvec4 expected = brute_force(view, surfels, settings, {column + 0.5, row + 0.5});
+      const glm::dvec2 x(column + 0.5, row + 0.5);
+      const glm::dvec4 expected = brute_force(view, surfels, some, x),
+                       expected_of_all = brute_force(view, surfels, all, x);
       for (int i = 0; i < 4; ++i) {
         ASSERT_NEAR(picture.sums[pixel][i], expected[i], 1e-9 * (1 + expected[i])) << column << ' ' << row;
+        ASSERT_NEAR(unoccluded.sums[pixel][i], expected_of_all[i], 1e-9 * (1 + expected_of_all[i]));
       }
       lit += expected.w > 0;
       occluded += picture.sums[pixel].w < unoccluded.sums[pixel].w;
@@ -144,10 +150,17 @@ void compare_with_brute_force(ScreenMap map, std::uint32_t seed) {
 }
 
 TEST(ScreenSpace, brute_force_affine) {
-  compare_with_brute_force(ScreenMap::affine, 21);
+  compare_with_brute_force(ScreenMap::affine, {.cutoff = 1.5, .shape = CutoffShape::circle}, 21);
 }
 TEST(ScreenSpace, brute_force_perspective) {
-  compare_with_brute_force(ScreenMap::perspective, 22);
+  compare_with_brute_force(ScreenMap::perspective, {.cutoff = 1.5, .shape = CutoffShape::circle}, 22);
+}
+TEST(ScreenSpace, brute_force_square) {
+  compare_with_brute_force(ScreenMap::perspective, {.cutoff = 1, .shape = CutoffShape::square}, 11);
+}
+TEST(ScreenSpace, brute_force_plain) {
+  compare_with_brute_force(ScreenMap::perspective,
+                           {.prefilter = false, .cutoff = 2, .shape = CutoffShape::square}, 13);
 }
 
 // A grid of surfels on the plane y = slope x, in the plane's own spacing.
@@ -171,13 +184,13 @@ View view_from_above() {
   return look_at({0, 5, 0}, {0, 0, 0}, {0, 0, 1}, 40.0, 96, 64, 1.0, 20.0);
 }
 
-TEST(ScreenSpace, equals_the_single_surface_reference_on_a_plane) {
+TEST(ScreenSpace, nothing_of_a_plane_is_hidden) {
   const std::vector<Surfel> surfels = plane(0.4, {0.2, 0.4, 0.9});
-  const View view = view_from_above();
   ScreenSpaceSettings settings = settings_of(ScreenMap::perspective);
   settings.depth_offset = 0.1;
-  const ScreenSpacePicture picture = screen_space_ewa(view, surfels, settings);
-  EXPECT_EQ(picture.sums, ewa_reference(view, surfels, settings.filter).sums);
+  const ScreenSpacePicture picture = screen_space_ewa(view_from_above(), surfels, settings);
+  settings.depth_offset = INFINITY;
+  EXPECT_EQ(picture.sums, screen_space_ewa(view_from_above(), surfels, settings).sums);
 }
 
 // Right of the middle the rising plane is nearer, left of it the falling one; each hides the other where they
@@ -201,6 +214,23 @@ TEST(ScreenSpace, crossing_surfaces_hide_each_other) {
       }
     }
   }
+}
+
+// The planes of large surfels reach past the eye.
+TEST(ScreenSpace, near_plane_crossing_stays_finite) {
+  Surfel surfel = tilted_surfel();
+  surfel.position = {0, 0, 0};
+  surfel.tangent_s = {5, 0, 5};
+  surfel.tangent_t = {0, 5, 0};
+  const View view = look_at({0, 0, -2}, {0, 0, 0}, {0, 1, 0}, 90.0, 64, 64, 0.1, 10.0);
+  ScreenSpaceSettings settings = settings_of(ScreenMap::perspective);
+  settings.depth_offset = INFINITY;
+  double largest = 0;
+  for (const glm::dvec4& sum : screen_space_ewa(view, {&surfel, 1}, settings).sums) {
+    ASSERT_TRUE(std::isfinite(sum.w));
+    largest = std::max(largest, sum.w);
+  }
+  EXPECT_GT(largest, 0.1);
 }
 
 TEST(ScreenSpace, same_bits_for_any_number_of_threads) {

@@ -7,7 +7,7 @@
 
 namespace splatscope::studies {
 
-CheckerboardPicture draw_checkerboard(const traces::Scene& scene, const kernels::ReferencePicture& reference,
+CheckerboardPicture draw_checkerboard(const traces::Scene& scene, const kernels::SplatSums& reference,
                                       const Machine& machine, const Progress& progress) {
   Frame frame = draw_frame(scene, machine, progress);
   const double decibels = psnr(frame, reference);
@@ -22,8 +22,8 @@ void reproduce_figure11(Findings& findings, const Progress& progress) {
   };
   const Machine machine = machine::load("geforce4-ti4400");
   // EWA in double precision, whatever the algorithm.
-  const kernels::ReferencePicture reference =
-      scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
+  const kernels::SplatSums reference =
+      single_surface_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
   std::vector<Findings::Comparison> pictures;
   auto list = nlohmann::ordered_json::array();
   for (const auto& [algorithm, caption] : kParts) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/reference/ewa_reference.h"
+#include "kernels/reference/splat_sums.h"
 #include "model/machine/machine.h"
 #include "model/output/frame.h"
 #include "studies/study.h"
@@ -15,7 +15,7 @@ struct CheckerboardPicture {
 };
 
 // What `machine` draws of a scene with a single surface, by the scene's algorithm.
-CheckerboardPicture draw_checkerboard(const traces::Scene& scene, const kernels::ReferencePicture& reference,
+CheckerboardPicture draw_checkerboard(const traces::Scene& scene, const kernels::SplatSums& reference,
                                       const Machine& machine, const Progress& progress = {});
 
 void reproduce_figure11(Findings& findings, const Progress& progress);

@@ -103,8 +103,8 @@ void add_to(Findings& findings, const std::vector<Table1Row>& table) {
 
 std::vector<Table1Row> table1_rows(const Progress& progress) {
   std::vector<Table1Row> rows;
-  const kernels::ReferencePicture reference =
-      scene_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
+  const kernels::SplatSums reference =
+      single_surface_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
   std::map<std::string, traces::CapturedWeights, std::less<>>
       weights;  // by machine: two algorithms share them
   constexpr double kFrames = std::size(kPublished);
