@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "model/testing/scratch_folder.h"
 #include "studies/what_if.h"
 
 namespace splatscope::studies {
@@ -77,13 +78,11 @@ TEST(Exploration, wishes_do_what_they_are_for) {
 
 // Lines of docs/exploration.md, made again.
 TEST(Exploration, the_documentation_holds) {
-  std::ifstream file(SPLATSCOPE_SOURCE "/docs/exploration.md");
-  std::stringstream page;
-  page << file.rdbuf();
+  const std::string page = text_of(SPLATSCOPE_SOURCE "/docs/exploration.md");
   const std::vector<Hardware> wishes{hardware("as it was"), hardware("8 vertex units"), hardware("divider")};
   for (const WhatIfRow& row :
        what_if_rows(traces::load_scene("checkerboard-ewa-per-surfel"), kBothMachines[1], wishes)) {
-    EXPECT_NE(page.str().find(line_of(row)), std::string::npos) << line_of(row);
+    EXPECT_NE(page.find(line_of(row)), std::string::npos) << line_of(row);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "model/testing/scratch_folder.h"
 #include "studies/peak_memory.h"
 #include "studies/run_results.h"
 
@@ -104,7 +105,7 @@ TEST(FidelityStudy, FiguresWithScenesOfTheirOwnAreDrawn) {
 }
 
 TEST(FidelityStudy, EveryGroupIsInTheReportAndInTheResults) {
-  const std::filesystem::path folder = testing::TempDir() + "fidelity-groups";
+  const ScratchFolder folder;
   std::vector<FidelityGroup> groups{{"Table 1", {}}, {"Figures", {}}};
   for (FidelityGroup& group : groups) {
     FidelityRow& row = group.rows.emplace_back();
@@ -113,22 +114,17 @@ TEST(FidelityStudy, EveryGroupIsInTheReportAndInTheResults) {
     row.cycles = 1000;
     row.host_seconds = 1;
   }
-  Findings findings(folder, "fidelity", "");
+  Findings findings(folder.path(), "fidelity", "");
   add_fidelity_report(findings, groups);
   findings.write(1);
-  const auto text_of = [&](const char* name) {
-    std::ifstream file(folder / name);
-    return std::string(std::istreambuf_iterator<char>(file), {});
-  };
-  const std::string report = text_of("report.html");
-  const auto results = nlohmann::json::parse(text_of("results.json"))["fidelity"];
+  const std::string report = text_of(folder / "report.html");
+  const auto results = nlohmann::json::parse(text_of(folder / "results.json"))["fidelity"];
   ASSERT_EQ(results.size(), groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {
     EXPECT_NE(report.find(std::string(groups[i].name) + ", over all frames"), std::string::npos);
     EXPECT_NE(report.find(groups[i].rows[0].scene), std::string::npos);
     EXPECT_EQ(results[i]["scene"], groups[i].rows[0].scene);
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(PeakMemory, GrowsWithWhatIsTakenAndStartsAgain) {

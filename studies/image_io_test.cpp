@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "model/error.h"
+#include "model/testing/scratch_folder.h"
 #include "studies/testing/read_image.h"
 
 namespace splatscope::studies {
@@ -18,9 +19,7 @@ namespace fs = std::filesystem;
 
 class ImageFile : public ::testing::Test {
  protected:
-  ImageFile() { fs::create_directories(folder_); }
-  ~ImageFile() override { fs::remove_all(folder_); }
-  fs::path folder_ = fs::temp_directory_path() / fmt::format("splatscope-{}-images", ::getpid());
+  ScratchFolder folder_;
 };
 
 Image ramp() {
@@ -66,15 +65,14 @@ TEST_F(ImageFile, PngRoundsToEightBits) {
 TEST_F(ImageFile, FilesAppearWholeOrNotAtAll) {
   EXPECT_THROW(write_exr(ramp(), folder_ / "none" / "a.exr"), UserError);
   EXPECT_THROW(write_png(ramp(), folder_ / "none" / "a.png"), UserError);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(ImageFile, HoldsNoDate) {
   write_exr(ramp(), folder_ / "a.exr");
   write_png(ramp(), folder_ / "a.png");
   for (const char* name : {"a.exr", "a.png"}) {
-    std::ifstream in(folder_ / name, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    const std::string bytes = text_of(folder_ / name);
     EXPECT_FALSE(std::regex_search(bytes, std::regex("[0-9]{4}:[0-9]{2}:[0-9]{2} "))) << name;
     EXPECT_EQ(bytes.find("tIME"), std::string::npos) << name;
   }

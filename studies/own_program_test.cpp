@@ -9,15 +9,15 @@
 #include "model/error.h"
 #include "model/isa/tokens.h"
 #include "model/render.h"
+#include "model/testing/scratch_folder.h"
 #include "traces/recorder.h"
 
 namespace splatscope::studies {
 namespace {
 
 std::string written(const char* name, const std::string& text) {
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / name).string();
-  std::ofstream(path) << text;
-  return path;
+  static const ScratchFolder folder;
+  return folder.file(name, text).string();
 }
 
 TEST(OwnProgram, TakesThePlaceOfTheRecordedOne) {
@@ -60,14 +60,9 @@ TEST(OwnProgram, MayBeTokens) {
 
 TEST(OwnProgram, IsRefusedWhereItIsWrong) {
   const Trace trace = small_trace();
-  const auto error_of = [&](const std::vector<std::string>& assignments) -> std::string {
+  const auto error_of = [&](const std::vector<std::string>& assignments) {
     Trace changed = trace;
-    try {
-      replace_programs(changed, assignments);
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "no error";
+    return splatscope::error_of([&] { replace_programs(changed, assignments); });
   };
   expect_start(error_of({"splat_ewa.vs"}), "--program: \"splat_ewa.vs\", expected NAME=FILE");
   expect_start(error_of({"none.vs=" + written("fine.vs", "vs_1_1\nmov oPos, v0\n")}),

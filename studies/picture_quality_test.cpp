@@ -4,8 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <sstream>
 
+#include "model/testing/scratch_folder.h"
 #include "studies/run.h"
 
 namespace splatscope::studies {
@@ -40,18 +41,18 @@ TEST(PictureQuality, FiltersThatEndLateAreSmoother) {
 
 // Of a surface so dark, and of splats so many and each of so little weight, that they round to nothing.
 TEST(PictureQuality, NoDarkPixelIsAHole) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "dark.ply";
-  std::ofstream out(file);
+  std::ostringstream out;
   out << "ply\nformat ascii 1.0\nelement vertex 1600\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "radius"})
     out << "property float " << name << '\n';
   for (const char* name : {"red", "green", "blue"}) out << "property uchar " << name << '\n';
   out << "end_header\n";
   for (int i = 0; i < 1600; ++i) out << i % 40 << ' ' << i / 40 << " 0 0 0 1 4 20 20 20\n";
-  out.close();
-  const traces::Scene scene = traces::parse_scene(
-      "[surfels]\nfile = '" + file.string() + "'\n[frame]\nwidth = 96\nheight = 96\n", "dark.toml");
-  std::filesystem::remove(file);
+  const ScratchFolder folder;
+  const traces::Scene scene =
+      traces::parse_scene("[surfels]\nfile = '" + folder.file("dark.ply", out.str()).string() +
+                              "'\n[frame]\nwidth = 96\nheight = 96\n",
+                          "dark.toml");
   const Machine machine = machine::load("geforce4-ti4400");
   const Trace trace = traces::record(scene, machine.numbers).trace;
   const FrameRun run = run_frame(trace, machine, Fidelity::functional);
@@ -61,11 +62,10 @@ TEST(PictureQuality, NoDarkPixelIsAHole) {
 }
 
 TEST(PictureQuality, RealModelsAreThoseThatAreThere) {
-  const std::filesystem::path folder = testing::TempDir();
+  const ScratchFolder folder;
   EXPECT_TRUE(real_models(folder / "nowhere").empty());
-  std::ofstream(folder / "bunny.obj") << "v 0 0 0\n";
-  const std::vector<ModelScene> models = real_models(folder);
-  std::filesystem::remove(folder / "bunny.obj");
+  folder.file("bunny.obj", "v 0 0 0\n");
+  const std::vector<ModelScene> models = real_models(folder.path());
   ASSERT_EQ(models.size(), 1u);
   EXPECT_EQ(models[0].name, "bunny");
 }

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "model/testing/scratch_folder.h"
+
 namespace splatscope::studies {
 namespace {
 
@@ -68,14 +70,12 @@ TEST(Precision, a_depth_offset_is_for_curved_surfaces) {
 
 // Lines of docs/precision.md, made again for the first of its scenes.
 TEST(Precision, the_documentation_holds) {
-  std::ifstream file(SPLATSCOPE_SOURCE "/docs/precision.md");
-  std::stringstream page;
-  page << file.rdbuf();
+  const std::string page = text_of(SPLATSCOPE_SOURCE "/docs/precision.md");
   const std::vector<PrecisionScene> scenes{precision_plane(0, 128, 256)};
   const std::vector<Switch> switches{switch_of("nothing", ""), switch_of("texel bits", "8"),
                                      switch_of("sub-pixel bits", "4"), switch_of("frame", "10 bits")};
   for (const SwitchRow& row : switch_rows(switches, scenes)) {
-    EXPECT_NE(page.str().find(line_of(row)), std::string::npos) << line_of(row);
+    EXPECT_NE(page.find(line_of(row)), std::string::npos) << line_of(row);
   }
 }
 

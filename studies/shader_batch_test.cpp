@@ -8,6 +8,7 @@
 #include <string>
 
 #include "model/error.h"
+#include "model/testing/error_of.h"
 
 namespace splatscope::studies {
 namespace {
@@ -126,12 +127,8 @@ TEST(ShaderBatch, ALineThatIsNoObjectIsAnsweredAndTheBatchGoesOn) {
   const std::string padding((std::size_t{16} << 20) + 1, ' ');
   std::istringstream cases(good + "\n\n[1]\n" + good + "\n{\"id\":\n" + "{" + padding + "}\n" + good);
   std::ostringstream results;
-  try {
-    run_shader_batch(cases, "cases.jsonl", Arithmetic::ieee, results);
-    FAIL() << "no UserError";
-  } catch (const UserError& error) {
-    EXPECT_STREQ(error.what(), "cases.jsonl:3: this is no case, expected a JSON object (lines like it: 3)");
-  }
+  EXPECT_EQ(error_of([&] { run_shader_batch(cases, "cases.jsonl", Arithmetic::ieee, results); }),
+            "cases.jsonl:3: this is no case, expected a JSON object (lines like it: 3)");
   EXPECT_EQ(results.str(), one + none + one + none + too_long + one);
 }
 

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "model/error.h"
+#include "model/testing/error_of.h"
 
 namespace splatscope::studies {
 namespace {
@@ -65,12 +66,8 @@ TEST(ShaderDebugger, PairsAreOneStepAndRelativeConstantsAreFollowed) {
 }
 
 TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
-  const auto error_of = [](const std::string& commands) -> std::string {
-    try {
-      return transcript(kProgram, commands);
-    } catch (const UserError& error) {
-      return error.what();
-    }
+  const auto error_of = [](const std::string& commands) {
+    return splatscope::error_of([&] { transcript(kProgram, commands); });
   };
   EXPECT_EQ(error_of("step\nprint r7\n"),
             "commands:2: the program writes no r7, expected one of its registers");

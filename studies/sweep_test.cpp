@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "model/error.h"
+#include "model/testing/scratch_folder.h"
 #include "studies/processes.h"
 #include "studies/run_results.h"
 #include "traces/trace_file.h"
@@ -28,7 +29,6 @@ namespace {
 class SweepFiles : public ::testing::Test {
  protected:
   SweepFiles() {
-    std::filesystem::create_directories(folder);
     const traces::Scene scene = traces::parse_scene(
         "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
         "[capture]\nviews = 2\nframe_size = 64\n",
@@ -36,19 +36,12 @@ class SweepFiles : public ::testing::Test {
     trace = traces::record(scene, machine.numbers).trace;
     traces::write_trace(trace, file);
   }
-  ~SweepFiles() override { std::filesystem::remove_all(folder); }
 
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("splatscope-sweep-" + std::to_string(::getpid()));
+  ScratchFolder folder;
   std::filesystem::path file = folder / "plane.trace";
   Machine machine = machine::load("geforce4-ti4400");
   Trace trace;
 };
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void copy_fields(const TriangleWork& from, TriangleWork& to) {
   to.quad_count = from.quad_count;
@@ -95,13 +88,10 @@ TEST_F(Sweeps, TheMachinesAreCheckedWithAllTheirParameters) {
     return run_sweep(file, machine, {{"memory.row_bytes", std::move(rows)}}, Fidelity::cycle,
                      {.before_work = [](const Opened&) { FAIL() << "a machine is wrong"; }});
   };
-  try {
-    sweep({"8192", "2048"});
-    FAIL() << "no UserError";
-  } catch (const UserError& error) {
-    EXPECT_STREQ(error.what(),
-                 "--set: memory.interleave_bytes is 4096, expected at most memory.row_bytes (2048)");
-  }
+  EXPECT_EQ(error_of([&] {
+              sweep({"8192", "2048"});
+            }),
+            "--set: memory.interleave_bytes is 4096, expected at most memory.row_bytes (2048)");
   const Sweep good = run_sweep(file, machine, {{"memory.row_bytes", {"4096", "8192"}}}, Fidelity::throughput);
   EXPECT_EQ(good.points.size(), 2u);
 }
@@ -164,12 +154,7 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
   EXPECT_THROW(swept_parameter("=1,2"), UserError);
   EXPECT_THROW(swept_parameter("vertex.units="), UserError);
   const auto error_of = [&](const char* text) {
-    try {
-      run_sweep(file, machine, {swept_parameter(text)}, Fidelity::cycle);
-    } catch (const UserError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return splatscope::error_of([&] { run_sweep(file, machine, {swept_parameter(text)}, Fidelity::cycle); });
   };
   EXPECT_EQ(error_of("vertex.units=1,99").find("--sweep: vertex.units is out of range (99), expected"), 0u);
   for (const char* text : {"vertex.units=1,,2", "vertex.units=1,2,", "vertex.units=,1", "vertex.units=,"}) {
@@ -182,14 +167,9 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
 
 TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {
   const auto error_of = [](const std::vector<std::string>& swept, const std::vector<std::string>& set) {
-    try {
-      swept_parameters(swept, set);
-    } catch (const UserError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return splatscope::error_of([&] { swept_parameters(swept, set); });
   };
-  EXPECT_EQ(error_of({"vertex.units=1,2", "memory.channels=1"}, {"vertex.issue_slots=2"}), "");
+  EXPECT_EQ(error_of({"vertex.units=1,2", "memory.channels=1"}, {"vertex.issue_slots=2"}), "no error");
   EXPECT_EQ(error_of({"vertex.units=1,2", "vertex.units=3"}, {}),
             "--sweep: vertex.units is given twice, expected all its values in one --sweep");
   EXPECT_EQ(error_of({"vertex.units=1,2"}, {"vertex.units=3"}),
@@ -239,8 +219,8 @@ TEST_F(WorkCaches, WhatIsCutShortIsNotTaken) {
 TEST_F(WorkCaches, WhatIsOfAnotherLayoutIsNotTaken) {
   const WorkCache cache(folder / "cache");
   cache.write("k", {});
-  const std::string magic_and_key = bytes_of(cache.path_of("k")).substr(0, 40);
-  const std::string no_draws = bytes_of(cache.path_of("k")).substr(kHeaderBytes);
+  const std::string magic_and_key = text_of(cache.path_of("k")).substr(0, 40);
+  const std::string no_draws = text_of(cache.path_of("k")).substr(kHeaderBytes);
   ASSERT_GE(no_draws.size(), sizeof(std::uint64_t));
   const std::string draws_missing = no_draws.substr(0, no_draws.size() - 8) + std::string(8, '\x11');
   WorkStream stream;
@@ -321,12 +301,8 @@ TEST_F(WorkCaches, AFolderInTheFilesPlaceIsAUsersError) {
   const WorkCache cache(folder / "cache");
   std::filesystem::create_directory(cache.path_of("k"));
   WorkStream stream;
-  try {
-    cache.read("k", trace, stream);
-    ADD_FAILURE() << "a folder is read";
-  } catch (const UserError& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with(cache.path_of("k").string() + ": ")) << error.what();
-  }
+  const std::string error = error_of([&] { cache.read("k", trace, stream); });
+  EXPECT_TRUE(error.starts_with(cache.path_of("k").string() + ": ")) << error;
 }
 
 // No byte that nobody has written, so of whatever memory the stream stands in.
@@ -335,7 +311,7 @@ TEST_F(WorkCaches, TheSameStreamIsTheSameBytes) {
   const Rendered rendered = render(trace, {});
   const auto bytes_with = [&](const std::vector<DrawWork>& work) {
     cache.write("k", {work, rendered.counters});
-    return bytes_of(cache.path_of("k"));
+    return text_of(cache.path_of("k"));
   };
   const std::string bytes = bytes_with(rendered.work);
   std::vector<DrawWork> elsewhere = rendered.work;
@@ -396,12 +372,11 @@ TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {
                               return "x";
                             }),
                std::runtime_error);
-  try {
-    in_processes(2, 2, [](std::size_t) -> std::string { throw UserError("a.toml", 3, "wrong: x"); });
-    ADD_FAILURE() << "a user's error is lost";
-  } catch (const UserError& error) {
-    EXPECT_STREQ(error.what(), "a.toml:3: wrong: x");
-  }
+  EXPECT_EQ(error_of([] {
+              in_processes(2, 2,
+                           [](std::size_t) -> std::string { throw UserError("a.toml", 3, "wrong: x"); });
+            }),
+            "a.toml:3: wrong: x");
   EXPECT_THROW(in_processes(4, 2, [](std::size_t i) -> std::string { return i == 1 ? ::_exit(3), "" : "x"; }),
                std::runtime_error);
 }

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "model/error.h"
+#include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"
 
 namespace splatscope::traces {
@@ -19,27 +20,20 @@ namespace fs = std::filesystem;
 
 class PointFileTest : public testing::Test {
  protected:
-  PointFileTest() { fs::create_directories(folder_); }
-  ~PointFileTest() override { fs::remove_all(folder_); }
-
   PointFile read(std::string_view text) {
     write_file(ply_, text);
     return read_ply(ply_);
   }
   std::string error_of(std::string_view text) {
-    try {
-      read(text);
-    } catch (const UserError& error) {
-      return std::string(error.what()).substr(ply_.string().size());
-    }
-    return "no error";
+    const std::string error = folder_.error_of([&] { read(text); });
+    return error.starts_with("p.ply") ? error.substr(5) : error;
   }
   Scene scene_of(std::string_view text, std::string_view keys = "") {
     write_file(ply_, text);
     return parse_scene(fmt::format("[surfels]\nfile = \"p.ply\"\n{}", keys), folder_ / "s.toml");
   }
 
-  fs::path folder_ = fs::temp_directory_path() / fmt::format("splatscope-{}-ply", ::getpid());
+  ScratchFolder folder_;
   fs::path ply_ = folder_ / "p.ply";
 };
 
@@ -311,22 +305,17 @@ TEST_F(PointFileTest, ASceneNeedsSurfels) {
   const auto error = [&](std::string_view file) {
     write_file(ply_, file);
     write_file(folder_ / "s.toml", "[surfels]\nfile = \"p.ply\"\n");
-    try {
-      load_scene(folder_ / "s.toml");
-    } catch (const UserError& error) {
-      return std::string(error.what()).substr(folder_.string().size());
-    }
-    return std::string("no error");
+    return folder_.error_of([&] { load_scene(folder_ / "s.toml"); });
   };
-  EXPECT_EQ(error(with_normals_and_radii("", 0)), "/p.ply: no vertices, expected the surfels of a scene");
+  EXPECT_EQ(error(with_normals_and_radii("", 0)), "p.ply: no vertices, expected the surfels of a scene");
   EXPECT_EQ(error(with_normals_and_radii("0 0 0  0 0 1  0  1 1 1\n", 1)),
-            "/s.toml: none of its surfels can be drawn: 1 left out (1 of radius 0), expected at least one "
+            "s.toml: none of its surfels can be drawn: 1 left out (1 of radius 0), expected at least one "
             "that can");
 }
 
 TEST_F(PointFileTest, MissingFileIsTheUsersError) {
   EXPECT_THROW(read_ply(folder_ / "none.ply"), UserError);
-  EXPECT_THROW(read_ply(folder_), UserError);
+  EXPECT_THROW(read_ply(folder_.path()), UserError);
 }
 
 }  // namespace

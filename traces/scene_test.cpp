@@ -7,18 +7,14 @@
 #include <glm/geometric.hpp>
 
 #include "model/error.h"
+#include "model/testing/error_of.h"
 #include "traces/scene_settings.h"
 
 namespace splatscope::traces {
 namespace {
 
 std::string error_of(std::string_view text) {
-  try {
-    parse_settings(text, "s.toml");
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "no error";
+  return splatscope::error_of([&] { parse_settings(text, "s.toml"); });
 }
 
 TEST(Scene, EmptyFileIsThePlaneOfFigure11) {
@@ -259,13 +255,10 @@ TEST(Scene, KeysOfSurfelsHaveSomethingToActOn) {
 // Planes that a scene leaves open are put where its surfels begin and end.
 TEST(Scene, APlaneIsNotBeyondWhatIsSeen) {
   const auto error = [](std::string_view camera) {
-    try {
+    return splatscope::error_of([&] {
       parse_scene(fmt::format("[surfels]\ngenerator = \"sphere\"\ncount = 50\n[camera]\n{}", camera),
                   "s.toml");
-    } catch (const UserError& refused) {
-      return std::string(refused.what());
-    }
-    return std::string("no error");
+    });
   };
   EXPECT_EQ(error("near = 1\nfar = 50\n"), "no error");
   EXPECT_EQ(error("far = 5\nnear = 6\n"), "s.toml:6: camera.near is 6 and camera.far 5, expected near < far");

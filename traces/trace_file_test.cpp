@@ -1,6 +1,7 @@
 #include "traces/trace_file.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <random>
 
 #include "model/error.h"
+#include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"
 #include "traces/trace_generated.h"
 
@@ -17,15 +19,11 @@ namespace splatscope::traces {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path scratch(std::string_view name) {
-  return fs::temp_directory_path() / fmt::format("splatscope-{}-{}", ::getpid(), name);
-}
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::StartsWith;
 
 std::vector<std::byte> bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::vector<char> chars((std::istreambuf_iterator<char>(in)), {});
-  const auto bytes = std::as_bytes(std::span(chars));
+  const std::string text = text_of(path);
+  const auto bytes = std::as_bytes(std::span(text));
   return {bytes.begin(), bytes.end()};
 }
 
@@ -116,8 +114,8 @@ void expect_equal(const Trace& a, const Trace& b) {
 
 class TraceFile : public testing::Test {
  protected:
-  ~TraceFile() override { fs::remove(path_); }
-  fs::path path_ = scratch("test.trace");
+  ScratchFolder folder_;
+  fs::path path_ = folder_ / "test.trace";
 };
 
 TEST_F(TraceFile, WhatIsWrittenIsReadBack) {
@@ -217,13 +215,7 @@ TEST_F(TraceFile, NewerVersionIsRefusedByName) {
   auto* root = flatbuffers::GetMutableRoot<flatbuffers::Table>(bytes.data());
   ASSERT_TRUE(root->SetField<std::uint32_t>(stored::Trace::VT_VERSION, kTraceVersion + 1, 0));
   write_file(path_, bytes);
-  try {
-    read_trace(path_);
-    FAIL() << "a newer version was let in";
-  } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("version 4, expected at most 3"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_THAT(error_of([&] { read_trace(path_); }), HasSubstr("version 4, expected at most 3"));
 }
 
 // A few bytes must not unfold to gigabytes: many entries that name one and the same buffer.
@@ -238,23 +230,19 @@ TEST_F(TraceFile, SharedBytesAreRefused) {
   stored::FinishTraceBuffer(
       builder, stored::CreateTrace(builder, kTraceVersion, 8, 8, buffers, textures, programs, commands));
   write_file(path_, std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize())));
-  try {
-    read_trace(path_);
-    FAIL() << "512 MiB out of 96 KiB";
-  } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("the same bytes twice"), std::string::npos) << error.what();
-  }
+  EXPECT_THAT(error_of([&] { read_trace(path_); }), HasSubstr("the same bytes twice"))
+      << "512 MiB out of 96 KiB";
 }
 
 TEST_F(TraceFile, WhatIsNoTraceIsRefused) {
-  EXPECT_THROW(read_trace(scratch("missing.trace")), UserError);
-  EXPECT_THROW(read_trace(fs::temp_directory_path()), UserError);
+  EXPECT_THROW(read_trace(folder_ / "missing.trace"), UserError);
+  EXPECT_THROW(read_trace(folder_.path()), UserError);
   write_file(path_, "surely not a trace");
   EXPECT_THROW(read_trace(path_), UserError);
 }
 
 TEST_F(TraceFile, UnwritablePlaceIsTheUsersError) {
-  EXPECT_THROW(write_trace(small_trace(), scratch("missing-folder") / "x.trace"), UserError);
+  EXPECT_THROW(write_trace(small_trace(), folder_ / "missing-folder" / "x.trace"), UserError);
 }
 
 struct Breakage {
@@ -314,46 +302,34 @@ TEST(TraceCheck, EachRuleIsChecked) {
   for (const Breakage& breakage : breakages()) {
     Trace trace = small_trace();
     breakage.apply(trace, std::get<Draw>(trace.commands[1]));
-    try {
-      check_trace(trace, "broken.trace");
-      ADD_FAILURE() << breakage.name << ": let in";
-    } catch (const UserError& error) {
-      const std::string what = error.what();
-      EXPECT_EQ(what.find("broken.trace: "), 0u) << breakage.name << ": " << what;
-      EXPECT_NE(what.find(breakage.message), std::string::npos) << breakage.name << ": " << what;
-      EXPECT_NE(what.find("expected"), std::string::npos) << breakage.name << ": " << what;
-    }
+    EXPECT_THAT(error_of([&] { check_trace(trace, "broken.trace"); }),
+                AllOf(StartsWith("broken.trace: "), HasSubstr(breakage.message), HasSubstr("expected")))
+        << breakage.name;
   }
 }
 
 TEST(OutputFile, LeavesNothingWithoutCommit) {
-  const fs::path folder = scratch("folder");
-  fs::create_directory(folder);
+  const ScratchFolder folder;
   { OutputFile file(folder / "a.txt"); }
-  EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
   write_file(folder / "a.txt", "whole");
   EXPECT_EQ(bytes_of(folder / "a.txt").size(), 5u);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
-  fs::remove_all(folder);
+  EXPECT_EQ(folder.names().size(), 1u);
 }
 
 TEST(OutputFiles, OfOneNameAreToldApart) {
-  const fs::path folder = scratch("folder");
-  fs::create_directories(folder / "below");
+  const ScratchFolder folder;
+  fs::create_directory(folder / "below");
   write_file(folder / "a.txt", "there");
   fs::create_hard_link(folder / "a.txt", folder / "hard.txt");
   fs::create_symlink("a.txt", folder / "soft.txt");
   fs::create_directory_symlink("below", folder / "link");
   const auto apart = [&](const fs::path& a, const fs::path& b) {
-    try {
-      expect_apart({{"-o", a}}, {{"FILE", b}});
-    } catch (const UserError& error) {
-      EXPECT_EQ(error.what(),
-                fmt::format("{}: is named by -o and by FILE ({}), expected a file of its own for each",
-                            a.string(), b.string()));
-      return false;
-    }
-    return true;
+    const std::string error = error_of([&] { expect_apart({{"-o", a}}, {{"FILE", b}}); });
+    if (error == "no error") return true;
+    EXPECT_EQ(error, fmt::format("{}: is named by -o and by FILE ({}), expected a file of its own for each",
+                                 a.string(), b.string()));
+    return false;
   };
   for (const char* name : {"a.txt", "below/../a.txt", "hard.txt", "soft.txt", "link/../a.txt"})
     EXPECT_FALSE(apart(folder / name, folder / "a.txt")) << name;
@@ -362,11 +338,11 @@ TEST(OutputFiles, OfOneNameAreToldApart) {
   EXPECT_TRUE(apart(folder / "new.txt", folder / "below" / "new.txt"));
   EXPECT_TRUE(apart(folder / "new.txt", folder / "a.txt"));
   EXPECT_TRUE(apart("", ""));  // no file at all
-  fs::remove_all(folder);
 }
 
 TEST(OutputFolder, StaysOnlyWithFilesInIt) {
-  const fs::path outer = scratch("folder");
+  const ScratchFolder scratch;
+  const fs::path outer = scratch / "outer";
   { OutputFolder folder(outer / "a" / "b"); }
   EXPECT_FALSE(fs::exists(outer));
   {
@@ -381,7 +357,6 @@ TEST(OutputFolder, StaysOnlyWithFilesInIt) {
   EXPECT_TRUE(fs::exists(outer / "empty"));  // it was there before
   EXPECT_THROW(OutputFolder(outer / "a" / "c.txt"), UserError);
   EXPECT_THROW(OutputFolder(outer / "a" / "c.txt" / "d"), UserError);
-  fs::remove_all(outer);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "model/error.h"
 #include "model/isa/validate.h"
+#include "model/testing/error_of.h"
 
 namespace splatscope::isa {
 namespace {
@@ -68,12 +69,7 @@ TEST(Tokens, CommentsAreSkipped) {
 }
 
 std::string error_of(const Tokens& tokens) {
-  try {
-    read_tokens(tokens, "a.vso");
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return splatscope::error_of([&] { read_tokens(tokens, "a.vso"); });
 }
 
 TEST(Tokens, HostileStreamsAreErrors) {

@@ -4,27 +4,18 @@
 
 #include "model/error.h"
 #include "model/machine/parameters.h"
+#include "model/testing/error_of.h"
 
 namespace splatscope::machine {
 namespace {
 
 std::string message_of(std::string_view text) {
-  try {
-    parse(text, "m.toml");
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_of([&] { parse(text, "m.toml"); });
 }
 
 std::string set_message(std::string_view assignment) {
   Machine machine;
-  try {
-    set(machine, assignment);
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_of([&] { set(machine, assignment); });
 }
 
 TEST(Machine, BuiltInFilesGiveEveryParameterWithItsSource) {
@@ -160,27 +151,19 @@ TEST(Machine, SetRefusesWhatAFileMayNotHold) {
 }
 
 TEST(Machine, WhatFitsTogetherMayBeAssignedInAnyOrder) {
-  const auto error_of = [](const Machine& machine) -> std::string {
-    try {
-      check(machine);
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "";
-  };
   Machine machine = load("geforce4-ti4400");
   assign(machine, "memory.interleave_bytes=4096");
-  EXPECT_EQ(error_of(machine),
+  EXPECT_EQ(error_of([&] { check(machine); }),
             "--set: memory.interleave_bytes is 4096, expected at most memory.row_bytes (1024)");
   assign(machine, "memory.row_bytes=4096", "--sweep");
-  EXPECT_EQ(error_of(machine), "");
+  EXPECT_EQ(error_of([&] { check(machine); }), "no error");
   assign(machine, "memory.row_bytes=3000", "--sweep");
-  EXPECT_EQ(error_of(machine), "--sweep: memory.row_bytes is 3000, expected a power of two");
+  EXPECT_EQ(error_of([&] { check(machine); }), "--sweep: memory.row_bytes is 3000, expected a power of two");
   // What the machine itself has may be what another parameter no longer leaves room for.
   machine = load("geforce4-ti4400");
   machine.memory.interleave_bytes = 1024;
   assign(machine, "memory.row_bytes=512");
-  EXPECT_EQ(error_of(machine),
+  EXPECT_EQ(error_of([&] { check(machine); }),
             "--set: memory.interleave_bytes is 1024, expected at most memory.row_bytes (512)");
 }
 

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "model/error.h"
+#include "model/testing/scratch_folder.h"
 #include "traces/point_file.h"
 #include "traces/scene.h"
 #include "traces/surfels.h"
@@ -20,12 +21,8 @@ namespace {
 
 class MeshFileTest : public testing::Test {
  protected:
-  ~MeshFileTest() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path file(const std::string& name, std::string_view text) const {
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+    return folder_.file(name, text);
   }
   Scene scene_of(const std::string& name, std::string_view text,
                  std::string_view keys = "count = 50\n") const {
@@ -33,16 +30,10 @@ class MeshFileTest : public testing::Test {
     return parse_scene(fmt::format("[surfels]\nfile = \"{}\"\n{}", name, keys), folder_ / "s.toml");
   }
   std::string error_of(const std::string& name, std::string_view text) const {
-    try {
-      scene_of(name, text);
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "no error";
+    return folder_.error_of([&] { scene_of(name, text); });
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / fmt::format("splatscope-mesh-{}", ::getpid());
+  ScratchFolder folder_;
 };
 
 constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
@@ -54,16 +45,10 @@ TEST_F(MeshFileTest, PointsHaveNoUseForKeysOfAMesh) {
       "property float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n";
   EXPECT_EQ(scene_of("points.ply", kPoints, "mirror = true\nneighbours = 4\n").surfels.size(), 2u);
   for (const std::string_view key : {"count = 3", "pattern = \"checker\"", "shading = 0"}) {
-    try {
-      scene_of("points.ply", kPoints, key);
-      ADD_FAILURE() << key;
-    } catch (const UserError& error) {
-      EXPECT_EQ(
-          std::string(error.what()),
-          fmt::format("{}:3: surfels.{} without a mesh or a model, expected it removed, or surfels with "
-                      "a file with faces or another generator than the plane",
-                      (folder_ / "s.toml").string(), key.substr(0, key.find(' '))));
-    }
+    EXPECT_EQ(folder_.error_of([&] { scene_of("points.ply", kPoints, key); }),
+              fmt::format("s.toml:3: surfels.{} without a mesh or a model, expected it removed, or surfels "
+                          "with a file with faces or another generator than the plane",
+                          key.substr(0, key.find(' '))));
   }
 }
 
@@ -90,7 +75,7 @@ TEST_F(MeshFileTest, WhatFindsNoPlaceIsCounted) {
   SurfelSource source = default_settings().surfels;
   source.file = "tiny.obj";
   source.count = 1000;
-  const SampledModel sampled = sample_source(source, folder_);
+  const SampledModel sampled = sample_source(source, folder_.path());
   EXPECT_EQ(describe(sampled),
             "1000 surfels from 1 triangles, 3 normals computed, 955 at the place of another");
   for (const Surfel& s : sampled.surfels) ASSERT_GT(s.radius, 8e-5f) << "a step and more";
@@ -269,7 +254,7 @@ TEST_F(MeshFileTest, WhatIsNoMeshIsTheUsersError) {
           .find("do not fit"),
       std::string::npos);
   EXPECT_THROW(read_mesh(folder_ / "none.obj"), UserError);
-  EXPECT_THROW(read_mesh(folder_), UserError);
+  EXPECT_THROW(read_mesh(folder_.path()), UserError);
 }
 
 std::string ply_mesh(std::string_view format, std::string_view faces, std::string_view data) {
@@ -281,7 +266,7 @@ std::string ply_mesh(std::string_view format, std::string_view faces, std::strin
 
 TEST_F(MeshFileTest, AnAsciiPlyIsWhatItsHeaderSays) {
   const auto error = [&](std::string_view faces, std::string_view data) {
-    return error_of("x.ply", ply_mesh("ascii", faces, data)).substr(folder_.string().size() + 1);
+    return error_of("x.ply", ply_mesh("ascii", faces, data));
   };
   EXPECT_EQ(scene_of("x.ply", ply_mesh("ascii", "1", "0 0 0\n1 0 0\n0 1 0\n\n3 0 1 2\n")).mesh.triangles, 1u);
   EXPECT_EQ(error("3", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
@@ -310,9 +295,7 @@ TEST_F(MeshFileTest, ABinaryPlyIsWhatItsHeaderSays) {
   EXPECT_EQ(scene_of("x.ply", whole).mesh.triangles, 1u);
   for (std::size_t size = 0; size < whole.size(); ++size)
     EXPECT_NE(error_of("x.ply", whole.substr(0, size)), "no error") << size << " bytes of " << whole.size();
-  const auto error = [&](int count) {
-    return error_of("x.ply", with_list_of(count)).substr(folder_.string().size() + 1);
-  };
+  const auto error = [&](int count) { return error_of("x.ply", with_list_of(count)); };
   EXPECT_EQ(error(-3),
             fmt::format("x.ply: a list of -3 items at byte {}, expected 0 or more", whole.size() - 12));
   for (const int count : {4, 2000000000})
@@ -329,9 +312,7 @@ TEST_F(MeshFileTest, AnOffFileIsWhatItsHeaderSays) {
       scene_of("x.off", "COFF\r\n3 1 0\r\n0 0 0 255 0 0 1\r\n1 0 0 9 9 9 9\r\n0 1 0 9 9 9 9\r\n3 0 1 2\r\n")
           .mesh.triangles,
       1u);
-  const auto error = [&](std::string_view text) {
-    return error_of("x.off", text).substr(folder_.string().size() + 1);
-  };
+  const auto error = [&](std::string_view text) { return error_of("x.off", text); };
   EXPECT_EQ(error("OFF\n3 2 0\n" + rows),
             "x.off:7: the file ends within its data, expected a line of numbers");
   EXPECT_EQ(error("OFF\n3 0 0\n" + rows),
@@ -380,8 +361,7 @@ TEST_F(MeshFileTest, NumbersOfAnObjFileMayBeginWithAPoint) {
 
 TEST_F(MeshFileTest, AVertexOfAnObjFileHasItsNumbers) {
   const auto error = [&](std::string_view vertex) {
-    return error_of("x.obj", fmt::format("v 0 0 0\n{}\n{}", vertex, kSquare))
-        .substr(folder_.string().size() + 1);
+    return error_of("x.obj", fmt::format("v 0 0 0\n{}\n{}", vertex, kSquare));
   };
   EXPECT_EQ(error("v 9 1"), "x.obj:2: a vertex of 2 numbers, expected 3, 4 or 6");
   EXPECT_EQ(error("v 1 \\\n2"), "x.obj:3: a vertex of 2 numbers, expected 3, 4 or 6");

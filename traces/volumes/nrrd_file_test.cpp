@@ -12,33 +12,22 @@
 #include <string>
 
 #include "model/error.h"
+#include "model/testing/scratch_folder.h"
 
 namespace splatscope::traces {
 namespace {
 
 class NrrdFile : public ::testing::Test {
  protected:
-  NrrdFile()
-      : folder_(std::filesystem::temp_directory_path() / ("splatscope-nrrd-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~NrrdFile() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return folder_ / name;
+    return folder_.file(name, bytes);
   }
   // What is said of a wrong file, without its folder.
   std::string error_of(const std::string& bytes) const {
-    try {
-      read_nrrd(write("a.nrrd", bytes));
-    } catch (const UserError& error) {
-      return std::string(error.what()).substr(folder_.string().size() + 1);
-    }
-    return "no error";
+    return folder_.error_of([&] { read_nrrd(write("a.nrrd", bytes)); });
   }
 
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
 };
 
 std::string header(const std::string& type, const std::string& sizes, const std::string& more = "") {
@@ -154,12 +143,7 @@ TEST_F(NrrdFile, ReadsPlacesOfVoxels) {
            "\nencoding: raw\nendian: little\nspacings: nan 1 1 1\n\n";
   };
   const auto refused = [&](const std::string& bytes) {
-    try {
-      read_nrrd_positions(write("a.nrrd", bytes));
-    } catch (const UserError& error) {
-      return std::string(error.what()).substr(folder_.string().size() + 1);
-    }
-    return std::string("no error");
+    return folder_.error_of([&] { read_nrrd_positions(write("a.nrrd", bytes)); });
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const VoxelPositions positions = read_nrrd_positions(

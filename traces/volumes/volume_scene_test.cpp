@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "model/error.h"
+#include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"
 #include "traces/scene.h"
 #include "traces/scene_keys.h"
@@ -17,12 +18,7 @@ namespace splatscope::traces {
 namespace {
 
 std::string error_of(const std::string& text) {
-  try {
-    parse_volume_scene(text, "a.toml");
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "no error";
+  return splatscope::error_of([&] { parse_volume_scene(text, "a.toml"); });
 }
 
 TEST(VolumeScene, EveryKeyHasADefault) {
@@ -102,7 +98,6 @@ TEST(VolumeScene, SaysWhatIsWrong) {
 class VolumeKinds : public testing::Test {
  protected:
   VolumeKinds() {
-    std::filesystem::create_directories(folder_);
     std::string nrrd =
         "NRRD0004\ntype: float\ndimension: 4\nsizes: 3 5 4 3\nencoding: raw\nendian: little\n\n";
     std::string ply =
@@ -117,11 +112,10 @@ class VolumeKinds : public testing::Test {
     }
     std::string values = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n\n";
     for (int i = 0; i < 60; ++i) values += static_cast<char>(i);
-    write_file(folder_ / "places.nrrd", nrrd);
-    write_file(folder_ / "samples.ply", ply);
-    write_file(folder_ / "values.nrrd", values);
+    folder_.file("places.nrrd", nrrd);
+    folder_.file("samples.ply", ply);
+    folder_.file("values.nrrd", values);
   }
-  ~VolumeKinds() override { std::filesystem::remove_all(folder_); }
 
   VolumeScene scene(const std::string& keys) const {
     return parse_volume_scene(
@@ -134,16 +128,10 @@ class VolumeKinds : public testing::Test {
         folder_ / "s.toml");
   }
   std::string error(const std::string& keys) const {
-    try {
-      scene(keys);
-    } catch (const UserError& error) {
-      return std::string(error.what()).substr(folder_.string().size() + 1);
-    }
-    return "no error";
+    return folder_.error_of([&] { scene(keys); });
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / fmt::format("splatscope-{}-kinds", ::getpid());
+  ScratchFolder folder_;
 };
 
 TEST_F(VolumeKinds, OneVolumeAsEachKindIsOnePicture) {
@@ -312,12 +300,8 @@ TEST_F(VolumeKinds, SaysWhatIsWrong) {
 }
 
 TEST(VolumeScene, IsNoSceneOfSurfels) {
-  try {
-    parse_scene("\n[volume]\n", "a.toml");
-    FAIL();
-  } catch (const UserError& error) {
-    EXPECT_STREQ(error.what(), "a.toml:2: [volume] in the place of surfels, expected a scene of surfels");
-  }
+  EXPECT_EQ(splatscope::error_of([] { parse_scene("\n[volume]\n", "a.toml"); }),
+            "a.toml:2: [volume] in the place of surfels, expected a scene of surfels");
 }
 
 }  // namespace
