@@ -1,8 +1,7 @@
-#include <charconv>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "app/commands.h"
 #include "app/machine_options.h"
@@ -11,27 +10,25 @@
 #include "studies/explain.h"
 #include "studies/own_program.h"
 #include "studies/run.h"
+#include "traces/words.h"
 
 namespace splatscope::app {
 namespace {
 
 struct Options {
   std::string input;
-  std::string machine = "geforce4-ti4400";
-  std::vector<std::string> settings, programs;
+  MachineOptions machine;
   std::string pixel, vertex;
 };
 
 // "12,34". Throws UserError naming `option`.
 std::pair<std::uint32_t, std::uint32_t> two_numbers(const std::string& text, const char* option,
                                                     const char* what) {
-  std::pair<std::uint32_t, std::uint32_t> numbers;
-  const char* const end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, numbers.first);
-  if (first.ec == std::errc{} && first.ptr != end && *first.ptr == ',') {
-    const auto second = std::from_chars(first.ptr + 1, end, numbers.second);
-    if (second.ec == std::errc{} && second.ptr == end) return numbers;
-  }
+  const std::string_view view = text;
+  const std::size_t comma = std::min(view.find(','), view.size());
+  const auto first = traces::number_of<std::uint32_t>(view.substr(0, comma));
+  const auto second = traces::number_of<std::uint32_t>(view.substr(std::min(comma + 1, view.size())));
+  if (first && second) return {*first, *second};
   throw UserError(option, 0, "\"" + text + "\", expected " + what);
 }
 
@@ -40,7 +37,7 @@ void explain(const Options& options, bool quiet) {
   if (!options.pixel.empty()) pixel = two_numbers(options.pixel, "--pixel", "X,Y, a pixel from the top left");
   if (!options.vertex.empty())
     vertex = two_numbers(options.vertex, "--vertex", "D,I, a draw and an index, both from 0");
-  const Machine machine = machine_of(options.machine, options.settings);
+  const Machine machine = options.machine.machine();
   machine::check(machine);
   ProgressBar loading("loading", quiet);
   auto opened = studies::open_input(options.input, loading.callback());
@@ -48,7 +45,7 @@ void explain(const Options& options, bool quiet) {
   ProgressBar recording("recording", quiet);
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   recording.clear();
-  for (const std::string& line : studies::replace_programs(input.trace, options.programs))
+  for (const std::string& line : studies::replace_programs(input.trace, options.machine.programs))
     std::cout << line << '\n';
   if (!options.pixel.empty()) {
     ProgressBar drawing("drawing", quiet);
@@ -68,10 +65,7 @@ void add_explain_command(CLI::App& app, Invocation& invocation) {
   const auto options = std::make_shared<Options>();
   command->add_option("INPUT", options->input, "FILE.trace, scene file, or name of a ready scene")
       ->required();
-  command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
-      ->capture_default_str();
-  command->add_option("--set", options->settings, "KEY=VALUE, as in run")->allow_extra_args(false);
-  command->add_option("--program", options->programs, "NAME=FILE, as in run")->allow_extra_args(false);
+  options->machine.add_to(*command);
   auto* what = command->add_option_group("what");
   what->add_option(
       "--pixel", options->pixel,

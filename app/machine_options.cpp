@@ -8,7 +8,18 @@
 
 namespace splatscope::app {
 
-Machine machine_of(const std::string& name, const std::vector<std::string>& settings) {
+void MachineOptions::add_to(CLI::App& command) {
+  command.add_option("--machine", name, "name of a machine, or a TOML file")->capture_default_str();
+  command.add_option("--set", settings, "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
+      ->allow_extra_args(false);
+  command
+      .add_option("--program", programs,
+                  "NAME=FILE: a program of one's own, text or tokens, in the place of the recorded one, as "
+                  "in splat_ewa.vs=mine.vs")
+      ->allow_extra_args(false);
+}
+
+Machine MachineOptions::machine() const {
   Machine machine = machine::load(name);
   std::set<std::string> given;
   for (const std::string& setting : settings) {
@@ -20,9 +31,8 @@ Machine machine_of(const std::string& name, const std::vector<std::string>& sett
   return machine;
 }
 
-std::vector<traces::NamedFile> named_files(const std::string& input, const std::string& machine,
-                                           const std::vector<std::string>& programs) {
-  std::vector<traces::NamedFile> files{{"INPUT", input}, {"--machine", machine}};
+std::vector<traces::NamedFile> MachineOptions::files_with(const std::string& input) const {
+  std::vector<traces::NamedFile> files{{"INPUT", input}, {"--machine", name}};
   for (const std::string& program : programs)
     files.push_back({"--program", program.substr(program.find('=') + 1)});
   return files;

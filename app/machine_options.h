@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -8,12 +9,20 @@
 
 namespace splatscope::app {
 
-// The machine of --machine with the parameters of --set, whose fit is not checked yet. Throws UserError where
-// one of these is wrong, or given twice: no one who writes that means the last.
-Machine machine_of(const std::string& name, const std::vector<std::string>& settings);
+// What the commands that run an input on a machine have in common: --machine, --set and --program.
+struct MachineOptions {
+  std::string name = "geforce4-ti4400";
+  std::vector<std::string> settings;  // KEY=VALUE
+  std::vector<std::string> programs;  // NAME=FILE
 
-// What a command that runs `input` reads by its command line alone; `programs`: NAME=FILE.
-std::vector<traces::NamedFile> named_files(const std::string& input, const std::string& machine,
-                                           const std::vector<std::string>& programs);
+  void add_to(CLI::App& command);
+
+  // Whose fit is not checked yet. Throws UserError where an option is wrong, or given twice: no one who
+  // writes that means the last.
+  Machine machine() const;
+
+  // What a command that runs `input` reads by its command line alone.
+  std::vector<traces::NamedFile> files_with(const std::string& input) const;
+};
 
 }  // namespace splatscope::app

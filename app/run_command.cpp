@@ -27,11 +27,9 @@ constexpr std::uint64_t kMostCyclesARow = 1'000'000'000'000;
 
 struct Options {
   std::string input;
-  std::string machine = "geforce4-ti4400";
+  MachineOptions machine;
   std::string fidelity = "cycle";
   std::uint64_t seed = 1;
-  std::vector<std::string> settings;
-  std::vector<std::string> programs;
   std::string out = "out";
   std::optional<std::string> reference;
   studies::ObserveOptions observe;
@@ -103,7 +101,7 @@ bool simulates_cycles(studies::Fidelity fidelity) {
 
 // That no file of the command line is written over another, nor over one of `files`.
 void expect_apart(const Options& options, std::vector<traces::NamedFile> files) {
-  const auto named = named_files(options.input, options.machine, options.programs);
+  const auto named = options.machine.files_with(options.input);
   files.insert(files.end(), named.begin(), named.end());
   const studies::ObserveOptions& observe = options.observe;
   for (const auto& [what, path] : {std::pair{"--timeline", &observe.timeline},
@@ -129,7 +127,7 @@ void expect_used(const Options& options, studies::Fidelity fidelity) {
 
 void run(const Options& options, bool quiet) {
   expect_apart(options, {});
-  const Machine machine = machine_of(options.machine, options.settings);
+  const Machine machine = options.machine.machine();
   machine::check(machine);
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
   expect_used(options, fidelity);
@@ -150,7 +148,7 @@ void run(const Options& options, bool quiet) {
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
   libraries.wait();
   recording.clear();
-  const std::vector<std::string> replaced = studies::replace_programs(input.trace, options.programs);
+  const std::vector<std::string> replaced = studies::replace_programs(input.trace, options.machine.programs);
   if (fidelity == studies::Fidelity::sampled || simulates_cycles(fidelity))
     sim::expect_countable_time(input.trace, machine);
   studies::RunObservers observers(options.observe, input.trace);
@@ -208,19 +206,9 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
   const auto options = std::make_shared<Options>();
   command->add_option("INPUT", options->input, "scene file (TOML), name of a ready scene, or FILE.trace")
       ->required();
-  command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
-      ->capture_default_str();
+  options->machine.add_to(*command);
   command->add_option("--fidelity", options->fidelity, "functional, throughput, sampled, cycle or referee")
       ->capture_default_str();
-  command
-      ->add_option("--set", options->settings,
-                   "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--program", options->programs,
-                   "NAME=FILE: a program of one's own, text or tokens, in the place of the recorded one, as "
-                   "in splat_ewa.vs=mine.vs")
-      ->allow_extra_args(false);
   command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
       ->capture_default_str();

@@ -18,9 +18,8 @@ namespace {
 
 struct Options {
   std::string input;
-  std::string machine = "geforce4-ti4400";
+  MachineOptions machine;
   std::string fidelity = "cycle";
-  std::vector<std::string> settings, programs;
   std::vector<std::string> swept;
   std::optional<std::string> cache;
   std::string out = "out";
@@ -41,11 +40,10 @@ void print(const studies::Sweep& sweep) {
 }
 
 void run(const Options& options, bool quiet) {
-  studies::expect_apart_from_results(named_files(options.input, options.machine, options.programs),
-                                     options.out);
-  const Machine machine = machine_of(options.machine, options.settings);
+  studies::expect_apart_from_results(options.machine.files_with(options.input), options.out);
+  const Machine machine = options.machine.machine();
   const studies::Fidelity fidelity = studies::fidelity_by_name(options.fidelity);
-  const auto swept = studies::swept_parameters(options.swept, options.settings);
+  const auto swept = studies::swept_parameters(options.swept, options.machine.settings);
   std::optional<traces::OutputFolder> folder;
   ProgressBar running("running", quiet);
   const auto before_work = [&](const studies::Opened& opened) {
@@ -54,7 +52,8 @@ void run(const Options& options, bool quiet) {
   };
   const studies::Sweep sweep = studies::run_sweep(
       options.input, machine, swept, fidelity,
-      {.programs = options.programs, .cache = options.cache, .before_work = before_work}, running.callback());
+      {.programs = options.machine.programs, .cache = options.cache, .before_work = before_work},
+      running.callback());
   running.clear();
   studies::ResultFiles files(folder->path());
   traces::write_file(files.place("sweep.csv"), studies::csv_of(sweep));
@@ -77,13 +76,9 @@ void add_sweep_command(CLI::App& app, Invocation& invocation) {
                    "KEY=VALUE,VALUE,...: a parameter of the machine; several give every combination")
       ->required()
       ->allow_extra_args(false);
-  command->add_option("--machine", options->machine, "name of a machine, or a TOML file")
-      ->capture_default_str();
+  options->machine.add_to(*command);
   command->add_option("--fidelity", options->fidelity, "throughput, sampled, cycle or referee")
       ->capture_default_str();
-  command->add_option("--set", options->settings, "KEY=VALUE: a parameter of all machines")
-      ->allow_extra_args(false);
-  command->add_option("--program", options->programs, "NAME=FILE, as in run")->allow_extra_args(false);
   command->add_option("--cache", options->cache,
                       "folder that keeps what the function of a frame gives the timing, for later sweeps");
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();

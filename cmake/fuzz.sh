@@ -6,7 +6,8 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build="$root/build/fuzz"
 seconds=${1:?usage: fuzz.sh SECONDS [NAME...]}
 names=("${@:2}")
-[ ${#names[@]} -gt 0 ] || names=(assembler token_reader machine scene ply nrrd trace)
+[ ${#names[@]} -gt 0 ] || mapfile -t names < <(find "$root/model" "$root/traces" -name '*_fuzz.cpp' -printf '%f\n' |
+  sed 's/_fuzz.cpp$//' | sort)
 "$root/cmake/install_packages.sh"
 for name in "${names[@]}"; do
   "$root/cmake/build.sh" "${name}_fuzz" fuzz -DCMAKE_CXX_COMPILER=clang++-22 -DSPLATSCOPE_FUZZ=ON

@@ -12,7 +12,6 @@
 #include "studies/reproduction/figure10.h"
 #include "studies/reproduction/figure3.h"
 #include "studies/reproduction/table2.h"
-#include "traces/weight_capture.h"
 
 namespace splatscope::studies {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "model/testing/scratch_folder.h"
 #include "studies/peak_memory.h"

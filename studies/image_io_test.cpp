@@ -1,11 +1,8 @@
 #include "studies/image_io.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 #include <regex>
 
 #include "model/error.h"

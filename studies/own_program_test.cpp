@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
-#include "model/error.h"
 #include "model/isa/tokens.h"
 #include "model/render.h"
 #include "model/testing/scratch_folder.h"

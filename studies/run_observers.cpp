@@ -2,36 +2,32 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <fstream>
 
 #include "model/error.h"
 #include "sim/observe/time_series.h"
 #include "traces/output_files.h"
+#include "traces/words.h"
 
 namespace splatscope::studies {
 namespace {
 
-// A cycle, or `absent` for an empty text; false where it is neither.
-bool parse_cycle(std::string_view text, sim::Cycle absent, sim::Cycle& cycle) {
-  cycle = absent;
-  if (text.empty()) return true;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), cycle);
-  return error == std::errc{} && end == text.data() + text.size();
+// A cycle, or `absent` for an empty text; nothing where it is neither.
+std::optional<sim::Cycle> cycle_of(std::string_view text, sim::Cycle absent) {
+  return text.empty() ? absent : traces::number_of<sim::Cycle>(text);
 }
 
 }  // namespace
 
 CycleWindow window_of(const std::string& text, const char* option) {
-  CycleWindow window;
-  const std::size_t colon = text.find(':');
-  if (text.empty()) return window;
+  if (text.empty()) return {};
   const std::string_view view = text;
-  if (colon == std::string::npos || !parse_cycle(view.substr(0, colon), 0, window.first) ||
-      !parse_cycle(view.substr(colon + 1), sim::kNever, window.last) || window.first > window.last) {
-    throw UserError(option, 0, fmt::format("\"{}\", expected FIRST:LAST, two core cycles", text));
+  if (const std::size_t colon = view.find(':'); colon != view.npos) {
+    const auto first = cycle_of(view.substr(0, colon), 0),
+               last = cycle_of(view.substr(colon + 1), sim::kNever);
+    if (first && last && *first <= *last) return {*first, *last};
   }
-  return window;
+  throw UserError(option, 0, fmt::format("\"{}\", expected FIRST:LAST, two core cycles", text));
 }
 
 void check(const ObserveOptions& options) {

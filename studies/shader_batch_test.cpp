@@ -7,7 +7,6 @@
 #include <sstream>
 #include <string>
 
-#include "model/error.h"
 #include "model/testing/error_of.h"
 
 namespace splatscope::studies {

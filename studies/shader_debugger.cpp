@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <istream>
 #include <ostream>
 #include <sstream>
@@ -15,6 +14,7 @@
 #include "model/isa/opcode.h"
 #include "model/isa/register_names.h"
 #include "model/isa/tokens.h"
+#include "traces/words.h"
 
 namespace splatscope::studies {
 namespace {
@@ -39,11 +39,10 @@ std::string text_of(const Vec4& value) {
 }
 
 int number_of(const std::string& text) {
-  int number = 0;
-  const char* end = text.data() + text.size();
-  if (std::from_chars(text.data(), end, number).ptr != end || text.empty() || number < 1)
+  const auto number = traces::number_of<int>(text);
+  if (!number || *number < 1)
     throw std::invalid_argument(fmt::format("'{}' is no number, expected 1 or more", text));
-  return number;
+  return *number;
 }
 
 bool same_bits(const Vec4& a, const Vec4& b) {

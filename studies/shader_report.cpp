@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "model/error.h"
 #include "model/input_file.h"
 #include "model/isa/analysis.h"
 #include "model/isa/opcode.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include <algorithm>
 #include <array>
 
 #include "kernels/reference/fast_splatting.h"

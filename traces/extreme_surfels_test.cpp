@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 
-#include "model/machine/machine.h"
 #include "model/render.h"
 #include "traces/splat_trace.h"
 

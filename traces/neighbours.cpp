@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <glm/geometric.hpp>
 
 #include "model/stop.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include "model/byte_order_mark.h"
@@ -93,15 +92,11 @@ class HeaderReader {
   }
 
   void read_element(const std::vector<std::string_view>& words) {
+    const auto count = words.size() == 3 ? number_of<decltype(PlyElement::count)>(words[2]) : std::nullopt;
+    if (!count) fail("wrong element", "\"element NAME COUNT\"");
     PlyElement element;
-    bool shaped = words.size() == 3;
-    if (shaped) {
-      element.name = words[1];
-      const char* end = words[2].data() + words[2].size();
-      const auto count = std::from_chars(words[2].data(), end, element.count);
-      shaped = count.ptr == end && count.ec == std::errc();
-    }
-    if (!shaped) fail("wrong element", "\"element NAME COUNT\"");
+    element.name = words[1];
+    element.count = *count;
     for (const PlyElement& other : header_.elements)
       if (other.name == element.name) fail(fmt::format("element \"{}\" is given twice", element.name), "one");
     header_.elements.push_back(std::move(element));

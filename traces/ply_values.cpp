@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <string>
 
 #include "model/error.h"
 #include "model/stop.h"
+#include "traces/words.h"
 
 namespace splatscope::traces {
 namespace {
@@ -73,12 +73,9 @@ class AsciiValues : public PlyValues {
   }
 
   double number(std::string_view word) const {
-    const std::string_view digits = word.front() == '+' ? word.substr(1) : word;
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size())
-      fail(fmt::format("\"{}\" is no number", word), "a number");
-    return value;
+    const auto value = signed_number_of<double>(word);
+    if (!value) fail(fmt::format("\"{}\" is no number", word), "a number");
+    return *value;
   }
 
   static std::string numbers(std::size_t count) {

@@ -8,13 +8,11 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <optional>
 
 #include "kernels/object_space_ewa/alpha_texture.h"
 #include "kernels/object_space_ewa/programs.h"
 #include "kernels/reference/volume/footprint.h"
-#include "kernels/splat_programs.h"
 #include "kernels/voxel_ewa/programs.h"
 #include "model/error.h"
 #include "model/stop.h"

@@ -21,13 +21,19 @@ inline std::vector<std::string_view> words_of(std::string_view text, std::string
   return words;
 }
 
-// All of the text as one number.
+// All of the text as one number, without a leading +.
 template <class Number>
 std::optional<Number> number_of(std::string_view text) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+// The same as C's functions read it: with a leading + too.
+template <class Number>
+std::optional<Number> signed_number_of(std::string_view text) {
+  return number_of<Number>(text.starts_with('+') ? text.substr(1) : text);
 }
 
 }  // namespace splatscope::traces

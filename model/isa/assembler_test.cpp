@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "model/error.h"
 #include "model/isa/program.h"
 #include "model/testing/error_of.h"
 

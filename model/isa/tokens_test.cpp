@@ -1,6 +1,5 @@
 #include "model/isa/tokens.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,6 +1,5 @@
 #include <bit>
 #include <cmath>
-#include <cstdint>
 
 #include "model/error.h"
 #include "model/number/ieee.h"

@@ -3,7 +3,6 @@
 #include <fstream>
 #include <random>
 #include <sstream>
-#include <string>
 
 #include "model/vertex/vertex_program.h"
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "sim/machine.h"
-#include "sim/units/memory/memory_channel.h"
 
 namespace splatscope::sim {
 namespace {

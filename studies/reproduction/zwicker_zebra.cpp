@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <utility>
 
 #include "kernels/reference/volume/fast_volume.h"

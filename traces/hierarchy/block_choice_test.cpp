@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 
 #include "model/error.h"
 #include "model/render.h"

@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <numbers>
 
 #include "traces/models/creatures.h"

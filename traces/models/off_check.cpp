@@ -19,11 +19,6 @@ namespace {
 
 constexpr std::uint64_t kMostCorners = 9;  // of a face, in assimp
 
-template <class Number>
-std::optional<Number> number(std::string_view word) {
-  return number_of<Number>(word.starts_with('+') ? word.substr(1) : word);
-}
-
 class OffCheck {
  public:
   explicit OffCheck(const std::filesystem::path& path)
@@ -31,7 +26,7 @@ class OffCheck {
 
   void check() {
     std::string word = header_word();
-    const bool keyword = !number<std::uint64_t>(word);  // which may be missing
+    const bool keyword = !signed_number_of<std::uint64_t>(word);  // which may be missing
     const std::size_t numbers = keyword ? numbers_of_a_vertex(word) : 3;
     if (keyword) word = header_word();
     const std::uint64_t vertices = count(word, "vertices"), faces = count(header_word(), "faces");
@@ -87,13 +82,13 @@ class OffCheck {
     take("4", 1);
     const bool counted = take("n", 0);
     if (!known || !keyword.empty()) fail("the first word is not \"OFF\"", "an OFF file");
-    const auto dimensions = counted ? number<std::size_t>(header_word()) : 3;
+    const auto dimensions = counted ? signed_number_of<std::size_t>(header_word()) : 3;
     if (!dimensions || *dimensions > 3) fail("a wrong number of dimensions", "1 to 3");
     return numbers + *dimensions;
   }
 
   std::uint64_t count(std::string_view word, std::string_view what) const {
-    const auto count = number<std::uint64_t>(word);
+    const auto count = signed_number_of<std::uint64_t>(word);
     if (!count || *count > size_ / 2)
       throw UserError(file_, 0,
                       fmt::format("\"{}\" {} do not fit in its {} bytes, expected a whole OFF file",
@@ -120,19 +115,20 @@ class OffCheck {
     begin_row();
     expect_numbers(numbers);
     for (std::string_view word : std::span(words_).first(numbers))
-      if (!number<double>(word)) fail(fmt::format("\"{}\" is no number", word.substr(0, 64)), "a number");
+      if (!signed_number_of<double>(word))
+        fail(fmt::format("\"{}\" is no number", word.substr(0, 64)), "a number");
     words_.clear();
   }
 
   void check_face() {
     begin_row();
-    const auto corners = number<std::uint64_t>(words_.front());
+    const auto corners = signed_number_of<std::uint64_t>(words_.front());
     if (!corners || *corners < 1 || *corners > kMostCorners)
       fail(fmt::format("a face of \"{}\" corners", words_.front().substr(0, 64)),
            fmt::format("1 to {}, as assimp does", kMostCorners));
     expect_numbers(1 + *corners);
     for (std::string_view word : std::span(words_).subspan(1, *corners))
-      if (!number<std::uint64_t>(word))
+      if (!signed_number_of<std::uint64_t>(word))
         fail(fmt::format("\"{}\" is no vertex", word.substr(0, 64)), "a whole number from 0 on");
     words_.clear();
   }

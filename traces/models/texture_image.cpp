@@ -1,6 +1,5 @@
 #include "traces/models/texture_image.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "model/error.h"
 #include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"
 #include "traces/scene.h"

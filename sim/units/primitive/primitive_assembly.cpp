@@ -1,6 +1,5 @@
 #include "sim/units/primitive/primitive_assembly.h"
 
-#include <algorithm>
 
 namespace splatscope::sim {
 namespace {

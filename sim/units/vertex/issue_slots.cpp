@@ -1,7 +1,6 @@
 #include "sim/units/vertex/issue_slots.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "model/isa/opcode.h"
 

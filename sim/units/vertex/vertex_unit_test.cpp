@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <random>
-#include <tuple>
 
 namespace splatscope::sim {
 namespace {

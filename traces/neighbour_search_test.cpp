@@ -1,4 +1,4 @@
-#include "traces/neighbours.h"
+#include "traces/neighbour_search.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "model/stop.h"
-#include "traces/neighbour_search.h"
 
 namespace splatscope::traces {
 namespace {
