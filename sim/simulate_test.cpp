@@ -186,6 +186,24 @@ TEST(Simulate, VerticesOverAgpTakeTheBus) {
   EXPECT_GE(agp.cycles, static_cast<Cycle>(1200 * 16 * 4.125));
 }
 
+// The host rewrites all colours, so a draw behind it reads them all again; behind a Present it does not.
+TEST(Simulate, ColoursThatTheHostRewroteAreReadAgain) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine::assign(machine, "blend.cache_lines=1024");
+  const auto misses = [&](const Command& between) {
+    RandomTrace made = simple_trace(200);
+    std::get<Draw>(made.trace.commands[1]).state.blend = true;
+    const Command draw = made.trace.commands[1];
+    made.trace.commands = {Clear{}, draw, between, draw};
+    made.work.push_back(made.work[0]);
+    made.work[1].command = 3;
+    return statistic(simulate(made.trace, made.work, machine), "blend", "misses");
+  };
+  const auto once = misses(Present{});
+  EXPECT_GT(once, 0u);
+  EXPECT_EQ(misses(NormalizeOnHost{}), 2 * once);
+}
+
 TEST(Simulate, WorkThatDoesNotFitTheTraceIsABug) {
   RandomTrace made = simple_trace(10);
   const Machine machine;
@@ -267,7 +285,7 @@ TEST(Simulate, BuffersThatTheRowsSpreadBeyondAllAddressesAreAUsersError) {
   Trace trace;
   trace.width = trace.height = 4;
   trace.buffers.resize(60, {MemoryPlace::video, std::vector<std::byte>(1)});
-  EXPECT_EQ(error_of([&] { lay_out(trace, machine); }), "");
+  EXPECT_EQ(error_of([&] { lay_out(trace, machine); }), "no error");
   trace.buffers.resize(70, trace.buffers[0]);
   EXPECT_EQ(
       error_of([&] { lay_out(trace, machine); }),

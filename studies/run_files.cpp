@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/error.h"
 #include "studies/result_files.h"
 
 namespace splatscope::studies {
@@ -40,7 +41,12 @@ std::vector<traces::NamedFile> files_of(const Opened& opened) {
 
 void expect_apart_from_results(const std::vector<traces::NamedFile>& files, const fs::path& folder) {
   std::vector<traces::NamedFile> results;
-  for (const std::string_view name : kResults) results.push_back({"a result in --out", folder / name});
+  for (const std::string_view name : kResults) {
+    results.push_back({"a result in --out", folder / name});
+    std::error_code error;
+    if (fs::is_directory(folder / name, error))
+      throw UserError((folder / name).string(), 0, "is a folder, expected a place for a file");
+  }
   for (const std::string& name : earlier_results(folder))
     results.push_back({"an earlier result in --out", folder / name});
   for (const traces::NamedFile& file : files)

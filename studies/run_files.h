@@ -17,7 +17,7 @@ std::string picture_name(std::size_t number, std::size_t frames);
 std::vector<traces::NamedFile> files_of(const Opened& opened);
 
 // Throws UserError where one of `files` has the place of a result that a run may write into `folder`, or that
-// stands there and would go away.
+// stands there and would go away; or where a folder has that place.
 void expect_apart_from_results(const std::vector<traces::NamedFile>& files,
                                const std::filesystem::path& folder);
 

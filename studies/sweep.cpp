@@ -9,7 +9,7 @@
 #include "studies/json_text.h"
 #include "studies/measure.h"
 #include "studies/own_program.h"
-#include "studies/processes.h"
+#include "model/processes.h"
 #include "studies/run_results.h"
 
 namespace splatscope::studies {

@@ -18,7 +18,7 @@
 
 #include "model/error.h"
 #include "model/testing/scratch_folder.h"
-#include "studies/processes.h"
+#include "model/processes.h"
 #include "studies/run_results.h"
 #include "traces/trace_file.h"
 

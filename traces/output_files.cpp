@@ -57,10 +57,11 @@ void expect_apart(const std::vector<NamedFile>& written, const std::vector<Named
 }
 
 OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
+  std::error_code error;
+  if (fs::is_symlink(path_, error)) path_ = fs::weakly_canonical(path_);  // the link stays
   // The process's number keeps two runs apart that write to the same place; the last one to finish wins.
   temporary_ = path_.parent_path() /
                fmt::format(".{}.{}{}", path_.stem().string(), ::getpid(), path_.extension().string());
-  std::error_code error;
   refuse_dash(path_);
   if (path_.filename().empty())
     throw UserError(fmt::format("\"{}\"", path_.string()), 0, "names no file, expected a place for one");

@@ -101,10 +101,10 @@ void check_size(const PlyHeader& header, const PlyElement& vertex, std::uintmax_
 }
 
 std::ifstream open(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
   std::error_code error;
-  if (!in || std::filesystem::is_directory(path, error))
-    throw UserError(path.string(), 0, "cannot be read, expected a PLY file");
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(path, error)) in.open(path, std::ios::binary);
+  if (!in.is_open()) throw UserError(path.string(), 0, "cannot be read, expected a PLY file");
   return in;
 }
 

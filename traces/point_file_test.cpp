@@ -315,6 +315,7 @@ TEST_F(PointFileTest, ASceneNeedsSurfels) {
 TEST_F(PointFileTest, MissingFileIsTheUsersError) {
   EXPECT_THROW(read_ply(folder_ / "none.ply"), UserError);
   EXPECT_THROW(read_ply(folder_.path()), UserError);
+  EXPECT_THROW(read_ply("/dev/null"), UserError);
 }
 
 }  // namespace

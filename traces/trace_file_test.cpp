@@ -315,6 +315,15 @@ TEST(OutputFile, LeavesNothingWithoutCommit) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
+TEST(OutputFile, GoesWhereALinkPoints) {
+  const ScratchFolder folder;
+  write_file(folder / "a.txt", "there");
+  fs::create_symlink("a.txt", folder / "soft.txt");
+  write_file(folder / "soft.txt", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "soft.txt"));
+  EXPECT_EQ(text_of(folder / "a.txt"), "new");
+}
+
 TEST(OutputFiles, OfOneNameAreToldApart) {
   const ScratchFolder folder;
   fs::create_directory(folder / "below");

@@ -248,5 +248,16 @@ TEST(Gamma, IsThePapersForASquareGridAndLessWhereMoreSplatsOverlap) {
   EXPECT_GT(saturated, 0u) << "and not darker than it must be";
 }
 
+// On a square grid 197 splats of radius 2 sqrt(2) overlap, and sum up to 1.960 (by hand: sum of
+// exp(-d.d/(4h.h)) over the grid within sqrt(8) sigma h, by 2 pi sigma^2).
+TEST(Gamma, CountsAllSplatsThatReachASurfel) {
+  const Scene plane =
+      parse_scene("[surfels]\ncolumns = 64\nrows = 64\n[splatting]\nsigma = 2\ncutoff = 4\n", "p");
+  const std::vector<double> sums = filter_sums(plane.surfels, plane.splatting, 1);
+  constexpr double kAtTheCutoff = 0.003;  // four, which rounding leaves out or not
+  EXPECT_NEAR(sums[32 * 64 + 32], 1.960, kAtTheCutoff);
+  EXPECT_NEAR(plane.splatting.gamma, 1 / (1.07 * 1.960), kAtTheCutoff);
+}
+
 }  // namespace
 }  // namespace splatscope::traces

@@ -36,8 +36,13 @@ Stretches::Stretches(const Trace& trace, const Machine& machine, const MemoryLay
   }
 }
 
-double Stretches::agp_clocks(double bytes) const {
-  return bytes / machine_.agp.bytes_per_clock * machine_.clock.core_megahertz / machine_.clock.bus_megahertz;
+// Core clocks of a line over the bus: whole clocks of it, or what a full queue of requests waits for one.
+double Stretches::clocks_per_agp_line() const {
+  const Machine::Agp& agp = machine_.agp;
+  const double transfer = whole_clocks(machine_.fetch.line_bytes, agp.bytes_per_clock);
+  const double latency = agp.latency_nanoseconds * machine_.clock.bus_megahertz / 1000;
+  return std::max(transfer, (latency + transfer) / agp.queue) * machine_.clock.core_megahertz /
+         machine_.clock.bus_megahertz;
 }
 
 // What the caches do is counted triangle by triangle, beside the sums of all stretches.
@@ -111,7 +116,7 @@ Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Su
   };
   fetch(job.draw->vertex_buffer, fetched);
   fetch(job.draw->index_buffer, 2 * indices);
-  clocks[kAgp] = agp_clocks(clocks[kAgp]);
+  clocks[kAgp] *= clocks_per_agp_line() / machine_.fetch.line_bytes;
   clocks[kMemory] = memory_clocks(bytes, machine_);
   return clocks;
 }

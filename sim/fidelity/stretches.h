@@ -74,7 +74,7 @@ class Stretches {
 
   Sums sums_of(std::span<const TriangleWork> triangles) const;
   Clocks clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums) const;
-  double agp_clocks(double bytes) const;
+  double clocks_per_agp_line() const;
 
   const Trace& trace_;
   const Machine& machine_;

@@ -63,18 +63,26 @@ class ThroughputEstimate::State {
 
   double core_clocks(double nanoseconds) const { return nanoseconds * machine_.clock.core_megahertz / 1000; }
 
+  // Of the first data of a buffer.
+  double read_latency(std::uint32_t buffer) const {
+    if (trace_.buffers[buffer].place == MemoryPlace::agp)
+      return core_clocks(machine_.agp.latency_nanoseconds);
+    return machine_.memory.precharge_clocks + machine_.memory.activate_clocks + machine_.memory.cas_clocks +
+           machine_.memory.return_latency;
+  }
+
   // From the first index to the last pixel, where nothing waits. Draws go past the units that they do not
-  // use.
-  double latency(const DrawJob& job) const {
-    const double read = machine_.memory.precharge_clocks + machine_.memory.activate_clocks +
-                        machine_.memory.cas_clocks + machine_.memory.return_latency;
+  // use, and end where nothing is left of them. `busy`: all of its clocks.
+  double latency(const DrawJob& job, const Clocks& busy) const {
+    const double read = read_latency(job.draw->index_buffer) + read_latency(job.draw->vertex_buffer);
     const double vertex = static_cast<double>(draws_.vertex_programs[job.vertex_program].size()) *
                           std::max(1, machine_.vertex.vector_latency);
     const bool color = job.draw->state.color_write;  // else a quad ends at the depth test, before its latency
-    const double depth = color && uses_depth(*job.draw) ? machine_.depth.latency : 0;
-    const double texture = uses_texture(*job.draw) ? machine_.texture.latency : 0;
-    const double pixels = color ? machine_.pixel.latency : 0;
-    return 2 * read + vertex + machine_.setup.latency + machine_.raster.latency + depth + texture + pixels;
+    const double triangles = busy[kSetup] > 0 ? machine_.setup.latency + machine_.raster.latency : 0;
+    const double depth = busy[kDepth] > 0 && color && uses_depth(*job.draw) ? machine_.depth.latency : 0;
+    const double texture = busy[kBlend] > 0 && uses_texture(*job.draw) ? machine_.texture.latency : 0;
+    const double pixels = busy[kBlend] > 0 ? machine_.pixel.latency : 0;
+    return read + vertex + triangles + depth + texture + pixels;
   }
 
   void add_clear() {
@@ -110,11 +118,14 @@ class ThroughputEstimate::State {
   }
 
   void add_draw(const DrawJob& job) {
+    if (job.work->triangles.empty()) return;  // begins no unit
+    Clocks busy{};
     for (const Clocks& stretch : stretches_.of(job)) {
-      for (std::size_t i = 0; i < kStages; ++i) busy_[i] += stretch[i];
+      for (std::size_t i = 0; i < kStages; ++i) busy[i] += stretch[i];
       cycles_ += *std::ranges::max_element(stretch);
     }
-    cycles_ += latency(job);
+    for (std::size_t i = 0; i < kStages; ++i) busy_[i] += busy[i];
+    cycles_ += latency(job, busy);
   }
 
   void add_unit(Result& result, const std::string& name, double busy) const {

@@ -14,8 +14,9 @@ namespace splatscope::sim {
 // The cycles of a trace from the counts of its work: no event is simulated. Each draw is cut into stretches
 // as long as what the queues between the units hold; the busiest unit of a stretch sets its time, and a draw
 // has the pipeline's latency on top. Misses of the frame and texture caches are counted on the tags for the
-// sampled triangles of each draw (DrawWork::is_sampled). Rows of DRAM, contention, and waits between units do
-// not count.
+// sampled triangles of each draw (DrawWork::is_sampled). Rows of DRAM, contention, waits between units, and
+// the rest of a line of memory of which one vertex is fetched (where vertices are not in the order of their
+// indices) do not count.
 //
 // Of the result, `event_hash` is 0, `statistics` is empty, and a unit that is not busy is starved. Throws
 // like simulate().

@@ -79,6 +79,8 @@ const Bottleneck kBottlenecks[] = {
       "memory.burst_bytes=16"},
      "texture"},
     {in_host_memory, {"agp.bytes_per_clock=1"}, "agp"},
+    {in_host_memory, {"agp.bytes_per_clock=7"}, "agp"},  // 9.1 clocks a line, and takes 10
+    {in_host_memory, {"agp.latency_nanoseconds=20000", "agp.bytes_per_clock=256"}, "agp"},  // a full queue
 };
 
 INSTANTIATE_TEST_SUITE_P(Units, Bottlenecks, ::testing::ValuesIn(kBottlenecks));
@@ -121,6 +123,50 @@ TEST(Throughput, ADrawPaysForTheUnitsThatItUsesAlone) {
   EXPECT_EQ(added(no_depth), 110u + 140u);
   EXPECT_EQ(added(depth_alone), 0u);  // its quads end at the test
   EXPECT_EQ(cycles_of(depth_alone, 100, 120, 150, true), cycles_of(depth_alone, 10, 10, 10, true));
+}
+
+// Draws one after the other, each of the same triangles.
+RandomTrace draws_of(int triangles, int draws, MemoryPlace place) {
+  RandomTrace made = testing::simple_trace(triangles);
+  for (Buffer& buffer : made.trace.buffers) buffer.place = place;
+  const Draw draw = std::get<Draw>(made.trace.commands[1]);
+  for (int i = 1; i < draws; ++i) {
+    made.work.push_back(made.work[0]);
+    made.work.back().command = static_cast<std::uint32_t>(made.trace.commands.size());
+    made.trace.commands.emplace_back(draw);
+  }
+  return made;
+}
+
+TEST(Throughput, AShortDrawWaitsForTheMemoryThatItsBuffersLieIn) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine.host.command_nanoseconds = 0;
+  machine.agp.latency_nanoseconds = 10000;
+  for (const MemoryPlace place : {MemoryPlace::video, MemoryPlace::agp}) {
+    const RandomTrace made = draws_of(1, 50, place);
+    const auto estimated = static_cast<double>(estimate_throughput(made.trace, made.work, machine).cycles);
+    const auto simulated = static_cast<double>(simulate(made.trace, made.work, machine).cycles);
+    // What units hand to each other takes a clock each time: a quarter of the shortest draws.
+    EXPECT_NEAR(estimated / simulated, 1, 0.25) << "place " << static_cast<int>(place);
+  }
+}
+
+TEST(Throughput, ADrawOfNothingBeginsNoUnit) {
+  Machine machine = machine::load("geforce4-ti4400");
+  machine.host.command_nanoseconds = 0;
+  RandomTrace made = testing::simple_trace(1);
+  std::get<Draw>(made.trace.commands[1]).index_count = 0;
+  DrawWork nothing;
+  nothing.command = 1;
+  made.work = {nothing};
+  const auto with = [&](const RandomTrace& trace) {
+    return estimate_throughput(trace.trace, trace.work, machine).cycles;
+  };
+  const Cycle one = with(made);
+  made.trace.commands.push_back(made.trace.commands[1]);
+  nothing.command = 2;
+  made.work.push_back(nothing);
+  EXPECT_EQ(with(made), one);
 }
 
 TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {

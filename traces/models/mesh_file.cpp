@@ -2,15 +2,19 @@
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 
 #include "model/error.h"
+#include "model/processes.h"
 #include "model/run_apart.h"
 #include "traces/models/assimp_files.h"
 #include "traces/models/obj_text.h"
@@ -25,7 +29,7 @@ namespace {
 struct Materials {
   struct Material {
     glm::vec3 color{0.85f};
-    std::optional<TextureImage> texture;
+    std::shared_ptr<const TextureImage> texture;  // several may share one; null: none
   };
   struct Part {
     std::size_t material = 0;
@@ -48,8 +52,8 @@ std::filesystem::path texture_file(std::string name, const std::filesystem::path
   return folder / name;
 }
 
-std::optional<TextureImage> texture_of(const aiScene& scene, const aiString& name,
-                                       const std::filesystem::path& folder) {
+std::optional<TextureImage> read_texture_of(const aiScene& scene, const aiString& name,
+                                            const std::filesystem::path& folder) {
   const aiTexture* embedded = scene.GetEmbeddedTexture(name.C_Str());
   if (!embedded) return read_texture(texture_file(name.C_Str(), folder));
   if (embedded->mHeight == 0)
@@ -65,9 +69,12 @@ std::optional<TextureImage> texture_of(const aiScene& scene, const aiString& nam
   return image;
 }
 
+enum class Textures : std::uint8_t { read, left_out };
+
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, aiScene& scene) : path_(path), scene_(scene) {}
+  Reader(const std::filesystem::path& path, aiScene& scene, Textures textures)
+      : path_(path), scene_(scene), textures_(textures) {}
 
   MeshFile read() {
     read_materials();
@@ -94,7 +101,7 @@ class Reader {
       for (aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
         aiString texture;
         if (scene_.mMaterials[i]->GetTexture(type, 0, &texture) != aiReturn_SUCCESS) continue;
-        material.texture = texture_of(scene_, texture, path_.parent_path());
+        material.texture = texture_of(texture);
         if (!material.texture) ++file_.textures_unreadable;
         break;
       }
@@ -102,6 +109,16 @@ class Reader {
       materials_->materials.push_back(std::move(material));
     }
     if (materials_->materials.empty()) materials_->materials.emplace_back();
+  }
+
+  // Each is read once, however many materials name it.
+  std::shared_ptr<const TextureImage> texture_of(const aiString& name) {
+    const auto [found, is_new] = texture_by_name_.try_emplace(name.C_Str());
+    if (is_new && textures_ == Textures::read) {
+      if (auto image = read_texture_of(scene_, name, path_.parent_path()))
+        found->second = std::make_shared<const TextureImage>(std::move(*image));
+    }
+    return found->second;
   }
 
   // Those of all kinds, bump maps and the like, not only those that colour the surfels.
@@ -127,9 +144,12 @@ class Reader {
   void add(const aiMesh& from, const aiMatrix4x4& transform) {
     Mesh& mesh = file_.model.mesh;
     const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-    if (mesh.triangles.size() + from.mNumFaces > kMostTriangles)
+    // A node may show a mesh again and again.
+    if (mesh.triangles.size() + from.mNumFaces > kMostTriangles ||
+        mesh.positions.size() + from.mNumVertices > 3 * kMostTriangles)
       throw UserError(path_.string(), 0,
-                      fmt::format("has more than {} triangles, expected fewer", kMostTriangles));
+                      fmt::format("has more than {} triangles, or three vertices for each, expected fewer",
+                                  kMostTriangles));
     const aiMatrix3x3 turn = aiMatrix3x3(transform).Inverse().Transpose();
     const bool texcoords = from.HasTextureCoords(0), colors = from.HasVertexColors(0);
     any_normals_ |= from.HasNormals();
@@ -162,7 +182,9 @@ class Reader {
 
   const std::filesystem::path& path_;
   const aiScene& scene_;
+  const Textures textures_;
   MeshFile file_;
+  std::map<std::string, std::shared_ptr<const TextureImage>> texture_by_name_;
   std::shared_ptr<Materials> materials_ = std::make_shared<Materials>();
   bool any_normals_ = false, any_texcoords_ = false, any_colors_ = false;
 };
@@ -209,7 +231,7 @@ bool is_mesh_file(const std::filesystem::path& path) {
 
 namespace {
 
-MeshFile read_whole(const std::filesystem::path& path) {
+MeshFile read_whole(const std::filesystem::path& path, Textures textures) {
   const std::string file = path.string();
   std::error_code error;
   const bool regular = std::filesystem::is_regular_file(path, error);
@@ -239,17 +261,59 @@ MeshFile read_whole(const std::filesystem::path& path) {
   const std::size_t dropped = drop_faces_out_of_range(*scene, polygons);
   if (polygons && !importer.ApplyPostProcessing(aiProcess_Triangulate))
     throw UserError(file, 0, "its polygons cannot be cut into triangles, expected a mesh");
-  MeshFile result = Reader(path, *scene).read();
+  MeshFile result = Reader(path, *scene, textures).read();
   result.faces_out_of_range = dropped;
   result.materials_unreadable = missing_materials(files, path);
   result.files.insert(result.files.end(), files.begin(), files.end());
   return result;
 }
 
+constexpr std::uint64_t kMebibyte = 1 << 20;
+
+void limit(int resource, std::uint64_t most) {
+  const rlimit value{most, most};
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &value);
+}
+
+// Address space of this process, bytes.
+std::uint64_t address_space() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// Formats whose parts nest are read by functions that call themselves, and a part may stand for copies of
+// copies: a small file can overflow the stack, which nothing catches, or fill all memory. So these are read
+// in a process of its own first, with less of both than this one has.
+void expect_bounded(const std::filesystem::path& path) {
+  constexpr std::string_view kFlat[] = {".obj", ".off", ".ply", ".stl"};
+  if (std::ranges::find(kFlat, ending_of(path)) != std::end(kFlat)) return;
+  const auto try_it = [&](std::size_t) {
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_STACK, 4 * kMebibyte);
+    std::error_code error;
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    if (!error) limit(RLIMIT_AS, address_space() + 2048 * kMebibyte + 64 * size);
+    read_whole(path, Textures::left_out);
+    return std::string();
+  };
+  try {
+    in_processes(1, 1, try_it);
+  } catch (const UserError&) {
+    throw;
+  } catch (const std::runtime_error&) {
+    throw UserError(
+        path.string(), 0,
+        "its reader breaks down, or takes 2 GiB and 64 times the size of the file, expected a mesh whose "
+        "parts nest less deeply, and repeat less often");
+  }
+}
+
 }  // namespace
 
 MeshFile read_mesh(const std::filesystem::path& path) {
-  return run_apart([path] { return read_whole(path); });  // assimp cannot be interrupted
+  expect_bounded(path);
+  return run_apart([path] { return read_whole(path, Textures::read); });  // assimp cannot be interrupted
 }
 
 }  // namespace splatscope::traces

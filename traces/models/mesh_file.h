@@ -21,8 +21,9 @@ bool is_mesh_file(const std::filesystem::path& path);
 
 // Any format of assimp, told by the file's ending. Textures are found beside the mesh. Throws UserError:
 // missing, unknown format, broken, a PLY or OFF file that is not what its header says, more than
-// kMostTriangles, no triangles. Memory is bounded by a multiple of the file's size as far as the format's
-// reader keeps to that; counts that a PLY or OFF file cannot hold are refused.
+// kMostTriangles, no triangles, so deep or so often repeated that assimp fails. Memory is bounded by a
+// multiple of the file's size: counts that a PLY or OFF file cannot hold are refused, and formats that nest
+// are tried in a process of its own first (model/processes.h).
 MeshFile read_mesh(const std::filesystem::path& path);
 
 inline constexpr std::size_t kMostTriangles = 64'000'000;

@@ -302,6 +302,14 @@ TEST_F(MeshFileTest, ABinaryPlyIsWhatItsHeaderSays) {
                           whole.size() - 12, count));
 }
 
+// Nested so deep that assimp's reader overflows its stack.
+TEST_F(MeshFileTest, AReaderThatBreaksDownIsAUsersError) {
+  const std::string deep(200000, '['), back(200000, ']');
+  EXPECT_EQ(error_of("x.gltf", R"({"asset":{"version":"2.0","extras":)" + deep + back + "}}")
+                .find("x.gltf: its reader breaks down "),
+            0u);
+}
+
 TEST_F(MeshFileTest, AnOffFileIsWhatItsHeaderSays) {
   const std::string rows = "0 0 0\n1 0 0\n\n0 1 0 # a corner\n3 0 1 2\n";
   for (const char* header : {"OFF\n3 1 0\n", "OFF 3 1 0\n# made by hand\n\n", "3 1 0\n", "nOFF 3\n3 1 0\n"})

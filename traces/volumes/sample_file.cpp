@@ -24,8 +24,8 @@ std::vector<kernels::VolumeSample> read_samples(const std::filesystem::path& pat
   for (std::size_t i = 0; i < points.surfels.size(); ++i) {
     const Surfel& point = points.surfels[i];
     const double radius = static_cast<double>(point.radius);
-    float sum = point.radius + points.values[i];
-    for (int axis = 0; axis < 3; ++axis) sum += point.position[axis] + point.normal[axis];
+    double sum = double{point.radius} + points.values[i];
+    for (int axis = 0; axis < 3; ++axis) sum += double{point.position[axis]} + point.normal[axis];
     if (!std::isfinite(sum) || !(radius >= 1e-9 && radius <= 1e9)) {
       throw UserError(
           file, 0,

@@ -52,9 +52,18 @@ glm::ivec3 voxels_of(const SceneSettings& settings, std::string_view file) {
   return voxels;
 }
 
+bool is_generated(const VolumeKeys& keys) {
+  return keys.generator != VolumeKeys{}.generator || keys.voxels != VolumeKeys{}.voxels;
+}
+
 kernels::Volume volume_of(const SceneSettings& settings, const std::filesystem::path& file) {
   const VolumeKeys& keys = settings.volume;
-  if (!keys.file.empty()) return read_nrrd(file.parent_path() / keys.file);
+  if (!keys.file.empty()) {
+    if (is_generated(keys))
+      throw UserError(file.string(), settings.line_of({"volume.generator", "volume.voxels"}),
+                      "volume.generator or volume.voxels beside volume.file, expected one of them");
+    return read_nrrd(file.parent_path() / keys.file);
+  }
   const glm::ivec3 n = voxels_of(settings, file.string());
   switch (keys.generator) {
     case VolumeGenerator::marschner_lobb:
@@ -139,11 +148,11 @@ kernels::VoxelPlaces places_of(const SceneSettings& settings, const kernels::Vol
 void read_irregular(const SceneSettings& settings, const std::filesystem::path& file, VolumeScene& scene) {
   const VolumeKeys& keys = settings.volume;
   if (!keys.file.empty() || !keys.positions.empty() || !keys.x.empty() || !keys.y.empty() ||
-      !keys.z.empty() || keys.voxels != glm::dvec3(0)) {
+      !keys.z.empty() || is_generated(keys)) {
     throw UserError(
         file.string(), settings.line_of({"volume.samples"}),
-        "volume.samples beside a grid's keys (file, voxels, x, y, z, positions), expected the one or "
-        "the other");
+        "volume.samples beside a grid's keys (file, generator, voxels, x, y, z, positions), expected the "
+        "one or the other");
   }
   scene.samples = read_samples(file.parent_path() / keys.samples, keys.kernel_variance);
   scene.volume.size = {static_cast<int>(scene.samples.size()), 1, 1};

@@ -275,10 +275,13 @@ TEST_F(VolumeKinds, SaysWhatIsWrong) {
             "places.nrrd: 5 x 4 x 3 places, expected 5 x 4 x 2, one for each voxel");
   EXPECT_EQ(error("generator = \"constant\"\nvoxels = [5, 1, 2]\nz = [0, 1]\n"),
             "s.toml:4: a grid with a single voxel along an axis, expected two where their places are given");
-  EXPECT_EQ(
-      error(file + "samples = \"samples.ply\"\n"),
-      "s.toml:3: volume.samples beside a grid's keys (file, voxels, x, y, z, positions), expected the one or "
-      "the other");
+  for (const std::string& key : {file, std::string("generator = \"head\"\n")})
+    EXPECT_EQ(error(key + "samples = \"samples.ply\"\n"),
+              "s.toml:3: volume.samples beside a grid's keys (file, generator, voxels, x, y, z, positions), "
+              "expected the one or the other");
+  for (const char* key : {"generator = \"head\"\n", "voxels = [4, 4, 4]\n"})
+    EXPECT_EQ(error(file + key),
+              "s.toml:3: volume.generator or volume.voxels beside volume.file, expected one of them");
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   const auto ply_error = [&](const std::string& text) {
@@ -295,6 +298,10 @@ TEST_F(VolumeKinds, SaysWhatIsWrong) {
             .starts_with("bad.ply: vertex 0 is not finite or of radius "))
         << wrong;
   }
+  EXPECT_EQ(ply_error("property float value\nproperty float radius\nend_header\n3e38 3e38 0 1 1\n")
+                .find("vertex 0 is not finite"),
+            std::string::npos)
+      << "its sum is not, in single precision";
 }
 
 TEST(VolumeScene, IsNoSceneOfSurfels) {

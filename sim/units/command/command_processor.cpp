@@ -41,6 +41,9 @@ void CommandProcessor::begin(Cycle now, const Order& order) {
         return begin_flush(now);
       }
       return begin_draw(now, (*jobs_)[order.job]);
+    case OrderKind::hand_over:
+      hands_over_ = blend_ != nullptr;
+      return begin_flush(now);
     case OrderKind::flush:
       return begin_flush(now);
     case OrderKind::clear:
@@ -120,6 +123,7 @@ Step CommandProcessor::advance(Cycle now) {
       begin_draw(now, *std::exchange(after_flush_, nullptr));
       return busy(now + 1);
     }
+    if (std::exchange(hands_over_, false)) blend_->clear();
     phase_ = Phase::reporting;
   }
   if (!to_host_->can_push(now)) return blocked(to_host_->consumer(), to_host_->next_free());

@@ -10,7 +10,8 @@
 
 namespace splatscope::sim {
 
-enum class OrderKind : std::uint8_t { draw, clear, flush };
+// hand_over: flush, and forget the frame's colours, which the host is going to rewrite.
+enum class OrderKind : std::uint8_t { draw, clear, flush, hand_over };
 
 // What the host tells the command processor: a command of the trace, or to write the caches back.
 struct Order {
@@ -63,6 +64,7 @@ class CommandProcessor final : public Unit {
 
   Phase phase_ = Phase::waiting;
   const DrawJob* after_flush_ = nullptr;  // begins when the caches are written back
+  bool hands_over_ = false;               // then
   std::size_t surface_ = 0;               // of the fill
   std::uint32_t filled_ = 0;              // bytes of it
   std::uint32_t orders_ = 0;

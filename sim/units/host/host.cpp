@@ -26,6 +26,7 @@ Step Host::send(Cycle now) {
     const Command& command = trace_.commands[command_];
     if (std::holds_alternative<Draw>(command)) order = {OrderKind::draw, draws_++};
     if (std::holds_alternative<Clear>(command)) order = {OrderKind::clear, 0};
+    if (std::holds_alternative<NormalizeOnHost>(command)) order = {OrderKind::hand_over, 0};
   }
   orders_->push(now, order);
   event(now, static_cast<std::uint64_t>(order.kind));

@@ -72,7 +72,7 @@ TEST(Host, SendsOneCommandAfterTheOtherAndNormalisesPixelByPixel) {
   // 10 cycles of preparation (none before the last), seen by the echo one later, its report one later.
   const testing::Timed<OrderKind> expected{{11, OrderKind::clear},
                                            {22 + 11, OrderKind::draw},
-                                           {44 + 11, OrderKind::flush},
+                                           {44 + 11, OrderKind::hand_over},
                                            {66 + 6 * 25 + 2, OrderKind::flush}};
   EXPECT_EQ(run.echo.orders(), expected);
   // A pixel: four reads of 5 cycles, 3 to divide, 2 to write; a cycle to turn to the last order.

@@ -1,4 +1,4 @@
-#include "studies/processes.h"
+#include "model/processes.h"
 
 #include <oneapi/tbb/global_control.h>
 #include <poll.h>
@@ -17,7 +17,7 @@
 #include "model/error.h"
 #include "model/stop.h"
 
-namespace splatscope::studies {
+namespace splatscope {
 namespace {
 
 enum class Kind : std::uint8_t { answer, failure, user_error };
@@ -158,8 +158,8 @@ std::vector<std::string> in_processes(std::size_t count, std::size_t processes,
       open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));
     }
   }
-  if (answered != count) throw std::runtime_error("a process of the sweep ended early");
+  if (answered != count) throw std::runtime_error("a process ended early");
   return answers;
 }
 
-}  // namespace splatscope::studies
+}  // namespace splatscope
