@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "model/error.h"
+#include "model/processes.h"
 #include "studies/json_text.h"
 #include "studies/measure.h"
 #include "studies/own_program.h"
-#include "model/processes.h"
 #include "studies/run_results.h"
 
 namespace splatscope::studies {

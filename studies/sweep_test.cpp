@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "model/error.h"
-#include "model/testing/scratch_folder.h"
 #include "model/processes.h"
+#include "model/testing/scratch_folder.h"
 #include "studies/run_results.h"
 #include "traces/trace_file.h"
 

@@ -36,6 +36,15 @@ double filter_at(const Surfel& surfel, const Splatting& splatting, const glm::dv
   return 0.5 * std::numbers::inv_pi / (splatting.sigma * splatting.sigma) * std::exp(-0.5 * squared);
 }
 
+// Whether a view along the normal of `asked` shows both surfels in its pixel: neither lies more than z_t
+// behind the other's plane there (Ren 2002, 5.1), and both face the eye.
+bool shown_together(const Surfel& surfel, const Surfel& asked, double depth_offset) {
+  const glm::dvec3 normal(surfel.normal);
+  const double facing = glm::dot(normal, glm::dvec3(asked.normal));
+  const double apart = glm::dot(glm::dvec3(surfel.position) - glm::dvec3(asked.position), normal);
+  return facing > 0 && std::abs(apart) <= depth_offset * facing;
+}
+
 // The surfels whose splats may reach surfel i: as many of the nearest as it takes for the furthest to lie
 // beyond the reach of the largest.
 void find_reaching(const NeighbourSearch& search, std::span<const Surfel> surfels, const Splatting& splatting,
@@ -63,8 +72,8 @@ std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting
       const Surfel& asked = surfels[i * step];
       find_reaching(search, surfels, splatting, i * step, near);
       for (const std::uint32_t j : near.index) {
-        if (glm::dot(surfels[j].normal, asked.normal) <= 0) continue;
-        sums[i] += filter_at(surfels[j], splatting, asked.position);
+        if (shown_together(surfels[j], asked, splatting.depth_offset))
+          sums[i] += filter_at(surfels[j], splatting, asked.position);
       }
     }
   });

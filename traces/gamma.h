@@ -17,8 +17,8 @@ inline constexpr double kPaperGamma = 0.73;  // Ren 2002, section 7.2: "works fo
 double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splatting);
 
 // The sums of the filters r_j (Ren 2002, Eq. 1) at every `step`th surfel, in double precision: what a capture
-// of weights measures, and whose inverse s_k is (7.1). Surfels that face away from the asked one are on
-// another side of the model and do not count.
+// of weights measures, and whose inverse s_k is (7.1). Of the surfels about the asked one those count that a
+// view along its normal shows with it: they face the eye, and neither lies behind the other by more than z_t.
 std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting& splatting,
                                 std::size_t step);
 

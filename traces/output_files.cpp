@@ -58,10 +58,6 @@ void expect_apart(const std::vector<NamedFile>& written, const std::vector<Named
 
 OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
   std::error_code error;
-  if (fs::is_symlink(path_, error)) path_ = fs::weakly_canonical(path_);  // the link stays
-  // The process's number keeps two runs apart that write to the same place; the last one to finish wins.
-  temporary_ = path_.parent_path() /
-               fmt::format(".{}.{}{}", path_.stem().string(), ::getpid(), path_.extension().string());
   refuse_dash(path_);
   if (path_.filename().empty())
     throw UserError(fmt::format("\"{}\"", path_.string()), 0, "names no file, expected a place for one");
@@ -72,6 +68,10 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
   if (is_standard_stream(path_))
     throw UserError(path_.string(), 0,
                     "is standard input, output or error of this run, expected a file of its own");
+  if (fs::is_symlink(path_, error)) path_ = fs::weakly_canonical(path_);  // the link stays
+  // The process's number keeps two runs apart that write to the same place; the last one to finish wins.
+  temporary_ = path_.parent_path() /
+               fmt::format(".{}.{}{}", path_.stem().string(), ::getpid(), path_.extension().string());
   errno = 0;
   if (std::ofstream(temporary_, std::ios::binary)) return;
   if (errno == ENOSPC || errno == EDQUOT) fail_for_disk(path_);

@@ -259,5 +259,23 @@ TEST(Gamma, CountsAllSplatsThatReachASurfel) {
   EXPECT_NEAR(plane.splatting.gamma, 1 / (1.07 * 1.960), kAtTheCutoff);
 }
 
+// A second layer behind a plane is seen with it where z_t reaches it, else not.
+TEST(Gamma, CountsWhatIsSeenTogether) {
+  const Scene plane = parse_scene("[surfels]\ncolumns = 24\nrows = 24\n", "p");
+  const auto in_the_middle = [&](const std::vector<Surfel>& surfels, double depth_offset) {
+    Splatting splatting = plane.splatting;
+    splatting.depth_offset = depth_offset;
+    return filter_sums(surfels, splatting, 1)[12 * 24 + 12];
+  };
+  const double one = in_the_middle(plane.surfels, 1);
+  std::vector<Surfel> two = plane.surfels;
+  for (Surfel surfel : plane.surfels) {
+    surfel.position.y -= 1.5f;
+    two.push_back(surfel);
+  }
+  EXPECT_EQ(in_the_middle(two, 1), one);
+  EXPECT_DOUBLE_EQ(in_the_middle(two, 2), 2 * one);
+}
+
 }  // namespace
 }  // namespace splatscope::traces

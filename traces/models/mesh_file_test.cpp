@@ -306,7 +306,7 @@ TEST_F(MeshFileTest, ABinaryPlyIsWhatItsHeaderSays) {
 TEST_F(MeshFileTest, AReaderThatBreaksDownIsAUsersError) {
   const std::string deep(200000, '['), back(200000, ']');
   EXPECT_EQ(error_of("x.gltf", R"({"asset":{"version":"2.0","extras":)" + deep + back + "}}")
-                .find("x.gltf: its reader breaks down "),
+                .find("x.gltf: its reader breaks down,"),
             0u);
 }
 

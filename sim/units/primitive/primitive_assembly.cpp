@@ -1,6 +1,5 @@
 #include "sim/units/primitive/primitive_assembly.h"
 
-
 namespace splatscope::sim {
 namespace {
 
