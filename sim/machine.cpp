@@ -1,5 +1,7 @@
 #include "sim/machine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,29 +43,32 @@ class Builder {
     return reference;
   }
 
+  // `what`: tells two between the same units apart.
   template <class T>
-  Channel<T>& channel(Unit& from, Unit& to, int capacity, int latency = 1) {
-    auto made = std::make_unique<Channel<T>>(from.name() + " to " + to.name(), from, to, capacity, latency);
+  Channel<T>& channel(Unit& from, Unit& to, int capacity, int latency = 1, std::string_view what = "") {
+    const std::string sender = what.empty() ? from.name() : fmt::format("{} ({})", from.name(), what);
+    auto made = std::make_unique<Channel<T>>(sender + " to " + to.name(), from, to, capacity, latency);
     Channel<T>& reference = *made;
     machine_.channels.push_back(std::move(made));
     return reference;
   }
 
   // A way of `client` to video memory, with `reads` in flight at most.
-  MemoryPort& video_port(Unit& client, const std::vector<MemoryChannel*>& memory, int reads) {
+  MemoryPort& video_port(Unit& client, const std::vector<MemoryChannel*>& memory, int reads,
+                         std::string_view what = "") {
     MemoryPort& port = add_port(client, reads);
     std::vector<Channel<MemoryRequest>*> requests;
     for (MemoryChannel* served_by : memory) {
-      requests.push_back(&channel<MemoryRequest>(client, *served_by, spec_.memory.request_queue));
+      requests.push_back(&channel<MemoryRequest>(client, *served_by, spec_.memory.request_queue, 1, what));
       served_by->connect(port, *requests.back());
     }
     port.connect(requests, static_cast<std::uint32_t>(spec_.memory.interleave_bytes));
     return port;
   }
 
-  MemoryPort& agp_port(Unit& client, AgpBus& agp, int reads) {
+  MemoryPort& agp_port(Unit& client, AgpBus& agp, int reads, std::string_view what) {
     MemoryPort& port = add_port(client, reads);
-    auto& requests = channel<MemoryRequest>(client, agp, spec_.agp.queue);
+    auto& requests = channel<MemoryRequest>(client, agp, spec_.agp.queue, 1, what);
     agp.connect(port, requests);
     port.connect({&requests}, static_cast<std::uint32_t>(spec_.memory.interleave_bytes));
     return port;
@@ -166,12 +171,12 @@ void connect_host(Builder& build, const Units& u) {
 
 // From indices to triangles that are set up; returns where these are.
 Items& connect_geometry(Builder& build, const Units& u, const Trace& trace, const Machine& spec) {
-  VertexFetch::Ports video{&build.video_port(*u.fetch, u.memory, spec.fetch.index_lines),
-                           &build.video_port(*u.fetch, u.memory, vertex_reads(trace, spec))};
+  VertexFetch::Ports video{&build.video_port(*u.fetch, u.memory, spec.fetch.index_lines, "indices"),
+                           &build.video_port(*u.fetch, u.memory, vertex_reads(trace, spec), "vertices")};
   VertexFetch::Ports over_agp;
   if (u.agp) {
-    over_agp = {&build.agp_port(*u.fetch, *u.agp, spec.fetch.index_lines),
-                &build.agp_port(*u.fetch, *u.agp, vertex_reads(trace, spec))};
+    over_agp = {&build.agp_port(*u.fetch, *u.agp, spec.fetch.index_lines, "indices"),
+                &build.agp_port(*u.fetch, *u.agp, vertex_reads(trace, spec), "vertices")};
   }
   std::vector<Channel<VertexNumber>*> vertices_in, vertices_out;
   for (VertexUnit* unit : u.vertex) {

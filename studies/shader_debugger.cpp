@@ -14,6 +14,7 @@
 #include "model/isa/opcode.h"
 #include "model/isa/register_names.h"
 #include "model/isa/tokens.h"
+#include "model/pixel/registers.h"
 #include "traces/words.h"
 
 namespace splatscope::studies {
@@ -69,14 +70,17 @@ ShaderDebugger::ShaderDebugger(isa::Program program, const ShaderCase& registers
       : record_fragment(registers);
   for (const isa::Definition& definition : program_.definitions)
     constants_[definition.index] = definition.values;
-  History written;  // only what the program writes
+  if (program_.version.kind == isa::ShaderKind::pixel) {  // within the ranges of the hardware
+    for (Vec4& constant : constants_)
+      for (float& value : constant) value = pixel::in_range(value, -1, 1);
+    for (Vec4& input : inputs_)
+      for (float& value : input) value = pixel::in_range(value, 0, 1);
+  }
   for (const isa::Instruction& instruction : program_.instructions) {
     const isa::OpcodeInfo* info = isa::find_opcode(program_.version, instruction.opcode);
-    if (!info->has_destination) continue;
     const std::string name = register_name(instruction.destination.file, instruction.destination.index);
-    if (history_.contains(name)) written[name] = history_[name];
+    if (info->has_destination && history_.contains(name)) written_.insert(name);
   }
-  history_ = std::move(written);
 }
 
 void ShaderDebugger::record_vertex(const ShaderCase& registers, const vertex::VertexProgram& program) {
@@ -129,6 +133,20 @@ std::string ShaderDebugger::source_text(const isa::Source& source) const {
   return values ? fmt::format("{} = {}", name, text_of((*values)[at_])) : name;
 }
 
+// The rows of a matrix are registers of their own.
+std::vector<std::string> ShaderDebugger::sources(const isa::Instruction& instruction) const {
+  std::vector<std::string> texts;
+  for (int i = 0; i < instruction.source_count; ++i) {
+    isa::Source source = instruction.sources[static_cast<std::size_t>(i)];
+    const int rows = i == 1 ? std::max(1, isa::matrix_shape(instruction.opcode).rows) : 1;
+    for (int row = 0; row < rows; ++row, ++source.index) {
+      const std::string text = source_text(source);
+      if (std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
+    }
+  }
+  return texts;
+}
+
 // One instruction, or a co-issued pair.
 void ShaderDebugger::step(std::ostream& out) {
   std::size_t end = at_ + 1;
@@ -136,12 +154,18 @@ void ShaderDebugger::step(std::ostream& out) {
   for (std::size_t place = at_; place < end; ++place) {
     const isa::Instruction& instruction = program_.instructions[place];
     out << fmt::format("{:>4}  {}\n", instruction.line, isa::disassemble(program_, instruction));
-    for (int i = 0; i < instruction.source_count; ++i)
-      out << "        reads " << source_text(instruction.sources[static_cast<std::size_t>(i)]) << '\n';
+    for (const std::string& source : sources(instruction)) out << "        reads " << source << '\n';
     const std::string name = register_name(instruction.destination.file, instruction.destination.index);
     const auto* values = find(name);
     if (values == nullptr || !isa::find_opcode(program_.version, instruction.opcode)->has_destination)
       continue;
+    if (instruction.opcode == isa::Opcode::texkill) {
+      const Vec4& read = (*values)[at_];
+      const bool kills = read[0] < 0 || read[1] < 0 || read[2] < 0;
+      out << fmt::format("        reads {} = {}\n        {}\n", name, text_of(read),
+                         kills ? "cancels the fragment" : "keeps the fragment");
+      continue;
+    }
     out << fmt::format("        {} before = {}\n        {} after  = {}\n", name, text_of((*values)[at_]),
                        name, text_of((*values)[end]));
   }
@@ -162,9 +186,9 @@ bool ShaderDebugger::watched_changed() const {
 }
 
 void ShaderDebugger::print(const std::vector<std::string>& names, std::ostream& out) const {
-  for (const auto& [name, values] : history_)
+  for (const std::string& name : written_)
     if (names.empty() || std::ranges::count(names, name) > 0)
-      out << fmt::format("{} = {}\n", name, text_of(values[at_]));
+      out << fmt::format("{} = {}\n", name, text_of((*find(name))[at_]));
 }
 
 void ShaderDebugger::list(std::ostream& out) const {
@@ -180,7 +204,7 @@ bool ShaderDebugger::obey(std::string_view command, const std::vector<std::strin
   };
   const auto check_names = [&] {
     for (const std::string& name : arguments)
-      if (!find(name))
+      if (!written_.contains(name))
         throw std::invalid_argument(
             fmt::format("the program writes no {}, expected one of its registers", name));
   };

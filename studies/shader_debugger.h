@@ -4,6 +4,7 @@
 #include <functional>
 #include <iosfwd>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +28,7 @@ class ShaderDebugger {
   void run(std::istream& commands, std::string_view name, std::ostream& out, bool interactive);
 
  private:
-  // Registers that instructions write, by name; one value before the first instruction and one after each.
+  // Registers by name; one value before the first instruction and one after each.
   using History = std::map<std::string, std::vector<Vec4>>;
 
   void record_vertex(const ShaderCase& registers, const vertex::VertexProgram& program);
@@ -41,6 +42,8 @@ class ShaderDebugger {
   void list(std::ostream& out) const;
   bool watched_changed() const;
   bool at_end() const { return at_ == program_.instructions.size(); }
+  // What an instruction reads, one text a register.
+  std::vector<std::string> sources(const isa::Instruction& instruction) const;
   std::string source_text(const isa::Source& source) const;
   const std::vector<Vec4>* find(const std::string& name) const;
 
@@ -48,6 +51,7 @@ class ShaderDebugger {
   std::vector<Vec4> constants_;
   std::array<Vec4, 16> inputs_{};
   History history_;
+  std::set<std::string> written_;  // by the program: what can be printed and watched
   std::vector<std::string> watched_;
   std::size_t at_ = 0;    // instructions done
   std::size_t from_ = 0;  // and before the last step: a pair is one

@@ -65,6 +65,32 @@ TEST(ShaderDebugger, PairsAreOneStepAndRelativeConstantsAreFollowed) {
   EXPECT_NE(relative.find("reads c3 = (1, 0, 0, 0)"), std::string::npos) << relative;
 }
 
+TEST(ShaderDebugger, ShowsAllRowsOfAMatrix) {
+  const std::string text = transcript("vs_1_1\nm3x3 r0.xyz, v0, c4\nmov r0.w, v0.w\nmov oPos, r0\n", "step\n", kInputs);
+  for (const char* row : {"reads c4 = ", "reads c5 = ", "reads c6 = "})
+    EXPECT_NE(text.find(row), std::string::npos) << text;
+  EXPECT_EQ(text.find("reads c7"), std::string::npos) << text;
+}
+
+TEST(ShaderDebugger, ShowsPixelRegistersInTheirRanges) {
+  const std::string text = transcript("ps_1_4\ndef c2, 4, -3, 0.5, 0\nmad r0, v0, c2, c2\n", "step\n",
+                                      R"({"inputs": {"v0": ["40400000", "c0400000", "3f000000", "0"]}})");
+  EXPECT_NE(text.find("reads v0 = (1, 0, 0.5, 0)"), std::string::npos) << text;
+  EXPECT_NE(text.find("reads c2 = (1, -1, 0.5, 0)"), std::string::npos) << text;
+  EXPECT_EQ(text.find("reads c2", text.find("reads c2") + 1), std::string::npos) << "once\n" << text;
+}
+
+TEST(ShaderDebugger, ShowsWhatKillsAndWhatIsSampledFrom) {
+  const std::string registers =
+      R"({"texcoords": {"t0": ["0", "3f800000", "0", "0"], "t1": ["bf800000", "0", "0", "0"]}})";
+  EXPECT_NE(transcript("ps_1_4\ntexld r0, t0\n", "step\n", registers).find("reads t0 = (0, 1, 0, 0)"),
+            std::string::npos);
+  const std::string kept = transcript("ps_1_1\ntexkill t0\nmov r0, v0\n", "step\n", registers),
+                    cancelled = transcript("ps_1_1\ntexkill t1\nmov r0, v0\n", "step\n", registers);
+  EXPECT_NE(kept.find("keeps the fragment"), std::string::npos) << kept;
+  EXPECT_NE(cancelled.find("cancels the fragment"), std::string::npos) << cancelled;
+}
+
 TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
   const auto error_of = [](const std::string& commands) {
     return splatscope::error_of([&] { transcript(kProgram, commands); });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <thread>
 
 #include "model/error.h"
@@ -109,6 +110,12 @@ SweptParameter swept_parameter(std::string_view text) {
   }
   if (parameter.key.empty() || equals + 1 == text.size())
     throw UserError("--sweep", 0, fmt::format("\"{}\", expected KEY=VALUE,VALUE,...", text));
+  std::set<std::string_view> given;
+  for (const std::string& value : parameter.values) {
+    if (!value.empty() && !given.insert(value).second)  // an empty one is no value, and refused as such
+      throw UserError("--sweep", 0,
+                      fmt::format("\"{}\" has {} twice, expected each value once", text, value));
+  }
   return parameter;
 }
 

@@ -31,11 +31,12 @@ std::string csv_of(const Sweep& sweep) {
     std::string settings;
     for (const auto& [key, value] : point.settings) settings += value + ",";
     const auto& frames = point.results["frames"];
+    const std::string busiest =  // of all frames together
+        frames.size() == 1 ? fmt::format("{},{}", point.rate.bottleneck, point.rate.share) : ",";
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      text +=
-          fmt::format("{}{},{},{},{},{},{}\n", settings, i, frames[i]["cycles"].get<std::uint64_t>(),
-                      frames[i]["milliseconds"].get<double>(), frames[i]["frames_per_second"].get<double>(),
-                      point.rate.bottleneck, point.rate.share);
+      text += fmt::format("{}{},{},{},{},{}\n", settings, i, frames[i]["cycles"].get<std::uint64_t>(),
+                          frames[i]["milliseconds"].get<double>(),
+                          frames[i]["frames_per_second"].get<double>(), busiest);
     }
   }
   return text;

@@ -153,6 +153,7 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
   EXPECT_THROW(swept_parameter("vertex.units"), UserError);
   EXPECT_THROW(swept_parameter("=1,2"), UserError);
   EXPECT_THROW(swept_parameter("vertex.units="), UserError);
+  EXPECT_THROW(swept_parameter("vertex.units=1,2,1"), UserError);
   const auto error_of = [&](const char* text) {
     return splatscope::error_of([&] { run_sweep(file, machine, {swept_parameter(text)}, Fidelity::cycle); });
   };

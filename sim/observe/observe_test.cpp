@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "sim/observe/time_series.h"
@@ -213,6 +214,17 @@ TEST(TimeSeries, RowsAddUpToTheResult) {
               1e-5 * static_cast<double>(run.result.cycles));
   for (const UnitStatistic& statistic : run.result.statistics) {
     EXPECT_EQ(static_cast<double>(statistic.value), sum(statistic.unit_name + "." + statistic.name, false));
+  }
+}
+
+// A reader of the table, or of a timeline's counters, finds columns by name.
+TEST(TimeSeries, ColumnsHaveNamesOfTheirOwn) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const std::string series = observe(seed, {}, 1000).series;
+    std::istringstream header(series.substr(0, series.find('\n')));
+    std::set<std::string> names;
+    for (std::string name; std::getline(header, name, ',');)
+      EXPECT_TRUE(names.insert(name).second) << name << ", seed " << seed;
   }
 }
 

@@ -270,9 +270,10 @@ MeshFile read_whole(const std::filesystem::path& path, Textures textures) {
 
 constexpr std::uint64_t kMebibyte = 1 << 20;
 
-void limit(int resource, std::uint64_t most) {
+template <auto resource>
+void limit(std::uint64_t most) {
   const rlimit value{most, most};
-  ::setrlimit(static_cast<__rlimit_resource>(resource), &value);
+  ::setrlimit(resource, &value);
 }
 
 // Address space of this process, bytes.
@@ -284,16 +285,16 @@ std::uint64_t address_space() {
 
 // Formats whose parts nest are read by functions that call themselves, and a part may stand for copies of
 // copies: a small file can overflow the stack, which nothing catches, or fill all memory. So these are read
-// in a process of its own first, with less of both than this one has.
+// in a process of its own first, with less stack than this one has, and memory for large files beside it.
 void expect_bounded(const std::filesystem::path& path) {
   constexpr std::string_view kFlat[] = {".obj", ".off", ".ply", ".stl"};
   if (std::ranges::find(kFlat, ending_of(path)) != std::end(kFlat)) return;
   const auto try_it = [&](std::size_t) {
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_STACK, 4 * kMebibyte);
+    limit<RLIMIT_CORE>(0);
+    limit<RLIMIT_STACK>(4 * kMebibyte);
     std::error_code error;
     const std::uint64_t size = std::filesystem::file_size(path, error);
-    if (!error) limit(RLIMIT_AS, address_space() + 2048 * kMebibyte + 64 * size);
+    if (!error) limit<RLIMIT_AS>(address_space() + 8192 * kMebibyte + 64 * size);
     read_whole(path, Textures::left_out);
     return std::string();
   };
@@ -304,7 +305,7 @@ void expect_bounded(const std::filesystem::path& path) {
   } catch (const std::runtime_error&) {
     throw UserError(
         path.string(), 0,
-        "its reader breaks down, or takes 2 GiB and 64 times the size of the file, expected a mesh whose "
+        "its reader breaks down, or takes 8 GiB and 64 times the size of the file, expected a mesh whose "
         "parts nest less deeply, and repeat less often");
   }
 }
