@@ -16,9 +16,10 @@ std::uint32_t bytes_of(DepthFormat format) {
   return format == DepthFormat::z16 ? 2 : 4;
 }
 
-// Blocks of 4x4 texels, 16 bytes each.
+// Of whole blocks.
 std::uint64_t texture_bytes(const Texture& texture) {
-  return std::uint64_t{(texture.width + 3) / 4} * ((texture.height + 3) / 4) * 16;
+  const auto blocks = [](std::uint32_t texels) { return (texels + kTexelBlockEdge - 1) / kTexelBlockEdge; };
+  return std::uint64_t{blocks(texture.width)} * blocks(texture.height) * kTexelBlockBytes;
 }
 
 // Gives out addresses, each at the start of a row of all banks and channels.

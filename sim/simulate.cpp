@@ -1,17 +1,16 @@
 #include "sim/simulate.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <iterator>
 
 namespace splatscope::sim {
 namespace {
 
 void add_unit(Result& result, const SimulatedMachine& machine, const Unit& unit, const Books& books) {
   result.units.push_back(named_books(machine, unit, books));
-  for (const Statistic& statistic : unit.statistics(kNever)) {
-    result.statistics.push_back({unit.name(), std::string(statistic.name), std::string(statistic.unit),
-                                 std::string(statistic.what), statistic.value});
-  }
+  std::ranges::move(named_statistics(unit), std::back_inserter(result.statistics));
   if (!unit.had_events()) return;  // the same hash, whether it is there or not
   result.event_hash = (std::rotl(result.event_hash, 7) ^ unit.event_hash()) * 0x9e3779b97f4a7c15u;
 }
@@ -70,6 +69,15 @@ UnitBooks named_books(const SimulatedMachine& machine, const Unit& unit, const B
     entry.blocked_by.emplace_back(by->name(), cycles);
   }
   return entry;
+}
+
+std::vector<UnitStatistic> named_statistics(const Unit& unit) {
+  std::vector<UnitStatistic> list;
+  for (const Statistic& statistic : unit.statistics(kNever)) {
+    list.push_back({unit.name(), std::string(statistic.name), std::string(statistic.unit),
+                    std::string(statistic.what), statistic.value});
+  }
+  return list;
 }
 
 std::vector<Cycle> cycles_of_frames(const Trace& trace, const Result& result) {

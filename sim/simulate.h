@@ -73,6 +73,7 @@ struct Result {
 
 // The books of a unit of `machine` with the names of the units in its way.
 UnitBooks named_books(const SimulatedMachine& machine, const Unit& unit, const Books& books);
+std::vector<UnitStatistic> named_statistics(const Unit& unit);
 
 // Core cycles of each frame, from the end of the one before it to the end of its last command, of a result
 // whose `cycles` and `command_ends` are known.

@@ -1,5 +1,8 @@
 #include "sim/unit_list.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace splatscope::sim {
 
 std::vector<UnitStatistic> declared_statistics(const Machine& machine) {
@@ -9,12 +12,7 @@ std::vector<UnitStatistic> declared_statistics(const Machine& machine) {
   const auto built = build_machine(empty, prepare_draws(empty, machine, layout), layout, machine,
                                    Scheduler::skip_ahead, UnitChoice::all);
   std::vector<UnitStatistic> list;
-  for (const auto& unit : built->units) {
-    for (const Statistic& statistic : unit->statistics(kNever)) {
-      list.push_back({unit->name(), std::string(statistic.name), std::string(statistic.unit),
-                      std::string(statistic.what), statistic.value});
-    }
-  }
+  for (const auto& unit : built->units) std::ranges::move(named_statistics(*unit), std::back_inserter(list));
   return list;
 }
 

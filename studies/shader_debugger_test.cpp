@@ -66,7 +66,8 @@ TEST(ShaderDebugger, PairsAreOneStepAndRelativeConstantsAreFollowed) {
 }
 
 TEST(ShaderDebugger, ShowsAllRowsOfAMatrix) {
-  const std::string text = transcript("vs_1_1\nm3x3 r0.xyz, v0, c4\nmov r0.w, v0.w\nmov oPos, r0\n", "step\n", kInputs);
+  const std::string text =
+      transcript("vs_1_1\nm3x3 r0.xyz, v0, c4\nmov r0.w, v0.w\nmov oPos, r0\n", "step\n", kInputs);
   for (const char* row : {"reads c4 = ", "reads c5 = ", "reads c6 = "})
     EXPECT_NE(text.find(row), std::string::npos) << text;
   EXPECT_EQ(text.find("reads c7"), std::string::npos) << text;

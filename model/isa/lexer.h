@@ -37,8 +37,6 @@ class Lexer {
   // Throws UserError "name:line:column: message".
   [[noreturn]] void fail(Place where, std::string_view message) const;
 
-  const std::string& name() const { return name_; }
-
  private:
   void advance();
   void expect_no_directive(std::string_view after, Place where) const;

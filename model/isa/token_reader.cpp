@@ -99,9 +99,10 @@ class TokenReader {
   }
 
   void read_declaration(std::uint32_t token) {
+    if (token != kDeclarationOpcode) fail(fmt::format("{:08x} is not a dcl", token));
     const std::uint32_t usage = next("the usage of dcl");
-    if (token != kDeclarationOpcode || (usage & ~(0xf000fu | kParameterBit)) != 0 ||
-        !(usage & kParameterBit) || usage_name(static_cast<int>(usage & 0xf)).empty())
+    if ((usage & ~(0xf000fu | kParameterBit)) != 0 || !(usage & kParameterBit) ||
+        usage_name(static_cast<int>(usage & 0xf)).empty())
       fail(fmt::format("{:08x} is not a usage of dcl", usage));
     Declaration declaration;
     declaration.usage = static_cast<std::uint8_t>(usage & 0xf);

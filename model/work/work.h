@@ -38,6 +38,7 @@ struct QuadWork {
 
 // 4x4 texels (16 bytes of an A8 texture), numbered by rows of blocks.
 inline constexpr std::uint32_t kTexelBlockEdge = 4;
+inline constexpr std::uint32_t kTexelBlockBytes = kTexelBlockEdge * kTexelBlockEdge;
 
 // 4x4 pixels of the frame, numbered by rows: what a cache line of it holds.
 inline constexpr std::uint32_t kFrameTileEdge = 4;

@@ -88,7 +88,7 @@ void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
   const double fill_bytes =
       in_bursts(draw.source ? machine_.texture.line_bytes : machine_.texture.fill_bytes, machine_);
   const int line_shift =
-      std::countr_zero(static_cast<unsigned>(machine_.texture.line_bytes / 16));  // of blocks
+      std::countr_zero(static_cast<unsigned>(machine_.texture.line_bytes) / kTexelBlockBytes);
   CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);
   CacheTags texture(machine_.texture.cache_lines, machine_.texture.cache_ways);
   double count = 0;

@@ -7,8 +7,7 @@
 
 namespace splatscope::sim {
 
-TimeSeries::TimeSeries(std::ostream& out, Cycle interval)
-    : out_(out), interval_(std::max<Cycle>(interval, 1)) {}
+TimeSeries::TimeSeries(std::ostream& out, Cycle interval) : out_(out), interval_(interval) {}
 
 void TimeSeries::begin(const SimulatedMachine& machine) {
   machine_ = &machine;

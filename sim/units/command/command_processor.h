@@ -23,7 +23,7 @@ struct Order {
 // all other units of its domain, so that what it begins is seen by them from the next cycle on.
 class CommandProcessor final : public Unit {
  public:
-  // The surfaces that a clear writes; 0 bytes: nothing to write (marked, or not there).
+  // A surface that a clear writes: not a depth buffer that is only marked, or that no draw uses.
   struct Surface {
     std::uint32_t address = 0;
     std::uint32_t bytes = 0;

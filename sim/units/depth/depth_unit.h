@@ -9,8 +9,8 @@
 namespace splatscope::sim {
 
 // Tests quads against the depth buffer through a write-back cache, and sends on what passed and has colour.
-// Lines that a fast clear marked are made in the cache,
-// not read. Not modelled: compression and hierarchical rejection of depth.
+// Lines that a fast clear marked are made in the cache, not read. Not modelled: compression and hierarchical
+// rejection of depth.
 class DepthUnit final : public FrameUnit {
  public:
   DepthUnit(std::string name, Completion& completion, const Machine::Depth& spec, const FrameLines& lines,

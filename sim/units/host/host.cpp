@@ -55,7 +55,6 @@ Step Host::report(Cycle now) {
 }
 
 Step Host::finish(Cycle now) {
-  finished_ = true;
   finished_at_ = now;
   phase_ = Phase::done;
   return idle();

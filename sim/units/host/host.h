@@ -32,7 +32,7 @@ class Host final : public Unit {
   std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
-  bool is_finished() const { return finished_; }
+  bool is_finished() const { return phase_ == Phase::done; }
   Cycle finished_at() const { return finished_at_; }
   // Bus cycle at which each command was done; the last one includes writing the caches back, as a Present
   // does.
@@ -62,7 +62,6 @@ class Host final : public Unit {
   Cycle ready_ = kNever;
   std::uint64_t pixels_left_ = 0;
   Femtoseconds pixel_end_ = 0;
-  bool finished_ = false;
   Cycle finished_at_ = 0;
   std::vector<Cycle> ends_;
   std::uint64_t pixels_ = 0;

@@ -50,8 +50,8 @@ class MemoryPort {
     channel_of(address).push(now, {address, 0, bytes, true});
   }
 
-  // The oldest read not released: when its data is there (kNever: not known yet; then await() has the client
-  // woken).
+  // The oldest read not released: when its data is there (kNever: not known yet; then await_oldest() has the
+  // client woken).
   Cycle oldest_ready() const { return returns_[oldest_ & mask_].ready; }
   const Unit& oldest_server() const { return *returns_[oldest_ & mask_].server; }
   void await_oldest() { awaited_ = oldest_ & mask_; }

@@ -3,11 +3,6 @@
 #include <bit>
 
 namespace splatscope::sim {
-namespace {
-
-constexpr unsigned kBlockBytes = 16;
-
-}  // namespace
 
 TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec,
                          int quads_per_clock)
@@ -17,7 +12,7 @@ TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine
                  quads_per_clock),
       spec_(spec),
       line_shift_(static_cast<std::uint32_t>(
-          std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kBlockBytes))) {}
+          std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kTexelBlockBytes))) {}
 
 void TextureUnit::connect(const QuadSources& in, Quads& out, MemoryPort& port) {
   sources_ = in;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/isa/opcode.h"
+#include "model/isa/validate.h"
 
 namespace splatscope::sim {
 namespace {
@@ -63,37 +64,13 @@ std::vector<Instruction> expanded(const Instruction& instruction, isa::Version v
   return {instruction};
 }
 
-// Components of the source operand (before its swizzle) that source `index` of the instruction uses.
-unsigned used_components(const Instruction& instruction, int index) {
-  switch (instruction.opcode) {
-    case Opcode::dp3:
-      return 0x7;
-    case Opcode::dp4:
-      return 0xf;
-    case Opcode::lit:
-      return 0xb;  // x, y, w
-    case Opcode::dst:
-      return index == 0 ? 0x6 : 0xa;  // y, z and y, w
-    case Opcode::rcp:
-    case Opcode::rsq:
-    case Opcode::expp:
-    case Opcode::logp:
-      return 0x8;  // a replicated component: the last of the swizzle is any of them
-    default:
-      return instruction.destination.mask;
-  }
-}
-
 ComponentMask reads_of(const Instruction& instruction) {
   ComponentMask reads = 0;
   for (int i = 0; i < instruction.source_count; ++i) {
     const Source& source = instruction.sources[static_cast<std::size_t>(i)];
     if (source.relative) reads |= kAddress;
     if (source.file != RegisterFile::temporary) continue;
-    const unsigned used = used_components(instruction, i);
-    for (unsigned component = 0; component < 4; ++component) {
-      if (used >> component & 1) reads |= ComponentMask{1} << (4 * source.index + source.swizzle[component]);
-    }
+    reads |= ComponentMask{isa::components_read(instruction, i)} << (4 * source.index);
   }
   return reads;
 }

@@ -25,10 +25,12 @@ struct IssueSlot {
   std::array<int, 2> instructions{-1, -1};  // their places in the program; -1: there is no second
 };
 
-// The slots of a program in order, macros expanded. Two neighbours share a slot where the unit pairs
-// (`vertex.pairing`) and: one is a vector and one a scalar instruction; neither needs the other's result;
-// together they read at most one constant and one input register; the vector one leaves the third operand
-// port free (it is not add, sub or mad); at most one of them writes an output register.
+// The slots of a program, macros expanded: in its order, or (`vertex.driver_reorders`) by list scheduling,
+// the longest chain first. Two, neighbours or where reordered any two that are ready, share a slot where the
+// unit pairs (`vertex.pairing`) and: one is a vector and one a scalar instruction, and none a nop; neither
+// needs the other's result, nor writes a component of it; together they read at most one constant and one
+// input register; the vector one leaves the third operand port free (it is not add, sub or mad); at most one
+// of them writes an output register.
 std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec);
 
 }  // namespace splatscope::sim
