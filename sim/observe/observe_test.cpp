@@ -249,7 +249,8 @@ TEST(TimeSeries, NoDataBusIsBusyForLongerThanARow) {
         EXPECT_LE(std::stod(rows[i][k]), length) << "seed " << seed << ", cycle " << rows[i].front();
       }
     }
-    for (const Json& event : Json::parse(run.timeline).at("traceEvents")) {
+    const Json timeline = Json::parse(run.timeline);
+    for (const Json& event : timeline.at("traceEvents")) {
       if (event.at("ph") != "C" || !event.at("name").get<std::string>().ends_with("data bus")) continue;
       for (const auto& [name, value] : event.at("args").items()) EXPECT_LE(value.get<int>(), 100) << name;
     }
