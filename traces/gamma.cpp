@@ -1,10 +1,11 @@
 #include "traces/gamma.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
@@ -17,24 +18,38 @@ namespace splatscope::traces {
 namespace {
 
 constexpr std::size_t kAsked = 10000;  // surfels
-// Of more splats over a surfel each would be worth less than half a step of 8 bits.
-constexpr std::size_t kMostNeighbours = 1024;
 // The largest sum between the surfels of a square grid is 1.355, that at them 1.275: 1.063 times as much. A
 // little is left to grids that are not square.
 constexpr double kBetween = 1.07;
 constexpr double kShare = 0.99;  // of the surfels whose sums do not saturate
 
-// r_j of Ren 2002, Eq. 1, at a point: in the plane of surfel j, in units of its radius.
-double filter_at(const Surfel& surfel, const Splatting& splatting, const glm::dvec3& point) {
-  const glm::dvec3 to = point - glm::dvec3(surfel.position);
-  const auto [s, t] = tangents(surfel);  // of length h
-  const double scale = 1 / (splatting.sigma * double{surfel.radius} * double{surfel.radius});
-  const double y0 = glm::dot(to, s) * scale, y1 = glm::dot(to, t) * scale;
-  const double squared = y0 * y0 + y1 * y1;
-  const double cut = splatting.circular_cutoff ? squared : std::max(y0 * y0, y1 * y1);
-  if (cut > 2 * splatting.cutoff) return 0;
-  return 0.5 * std::numbers::inv_pi / (splatting.sigma * splatting.sigma) * std::exp(-0.5 * squared);
-}
+// r_j of Ren 2002, Eq. 1: in the plane of surfel j, in units of its radius.
+class Filter {
+ public:
+  Filter(const Surfel& surfel, const Splatting& splatting)
+      : centre_(surfel.position),
+        peak_(0.5 * std::numbers::inv_pi / (splatting.sigma * splatting.sigma)),
+        cut_(2 * splatting.cutoff),
+        circular_(splatting.circular_cutoff) {
+    const auto [s, t] = tangents(surfel);  // of length h
+    const double scale = 1 / (splatting.sigma * double{surfel.radius} * double{surfel.radius});
+    s_ = glm::dvec3(s) * scale;
+    t_ = glm::dvec3(t) * scale;
+  }
+
+  double at(const glm::dvec3& point) const {
+    const glm::dvec3 to = point - centre_;
+    const double y0 = glm::dot(to, s_), y1 = glm::dot(to, t_);
+    const double squared = y0 * y0 + y1 * y1;
+    const double cut = circular_ ? squared : std::max(y0 * y0, y1 * y1);
+    return cut > cut_ ? 0 : peak_ * std::exp(-0.5 * squared);
+  }
+
+ private:
+  glm::dvec3 centre_, s_{}, t_{};
+  double peak_, cut_;
+  bool circular_;
+};
 
 // Whether a view along the normal of `asked` shows both surfels in its pixel: neither lies more than z_t
 // behind the other's plane there (Ren 2002, 5.1), and both face the eye.
@@ -45,39 +60,44 @@ bool shown_together(const Surfel& surfel, const Surfel& asked, double depth_offs
   return facing > 0 && std::abs(apart) <= depth_offset * facing;
 }
 
-// The surfels whose splats may reach surfel i: as many of the nearest as it takes for the furthest to lie
-// beyond the reach of the largest.
-void find_reaching(const NeighbourSearch& search, std::span<const Surfel> surfels, const Splatting& splatting,
-                   std::size_t i, NeighbourSearch::Found& near) {
+// The furthest from its centre that a splat adds to a surfel shown with it: in its plane as far as the filter
+// goes, across it z_t.
+double reach_of(const Surfel& surfel, const Splatting& splatting) {
+  constexpr double kRounding = 1.00001;  // of binary32, in which distances are found
   const double shape = splatting.circular_cutoff ? 1 : std::numbers::sqrt2;
-  const double reach = shape * std::sqrt(2 * splatting.cutoff) * splatting.sigma;  // in radii
-  for (std::size_t count = 64; count <= kMostNeighbours; count *= 2) {
-    search.find(i, count, near);
-    float largest = 0;
-    for (const std::uint32_t j : near.index) largest = std::max(largest, surfels[j].radius);
-    if (near.size() < count || near.distance(count - 1) > reach * largest) return;
-  }
+  const double filter = shape * std::sqrt(2 * splatting.cutoff) * splatting.sigma * double{surfel.radius};
+  return kRounding * std::hypot(filter, splatting.depth_offset);
 }
 
 }  // namespace
 
+// Each surfel adds its filter to those asked that it reaches: so that none is missed, however small the
+// surfels are that lie between.
 std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting& splatting,
                                 std::size_t step) {
-  const NeighbourSearch search(surfels);
-  std::vector<double> sums((surfels.size() + step - 1) / step);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.size(), 256), [&](const auto& range) {
-    NeighbourSearch::Found near;
-    stop_if_asked();
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const Surfel& asked = surfels[i * step];
-      find_reaching(search, surfels, splatting, i * step, near);
-      for (const std::uint32_t j : near.index) {
-        if (shown_together(surfels[j], asked, splatting.depth_offset))
-          sums[i] += filter_at(surfels[j], splatting, asked.position);
-      }
+  std::vector<Surfel> asked;
+  for (std::size_t i = 0; i < surfels.size(); i += step) asked.push_back(surfels[i]);
+  const NeighbourSearch search(asked);
+  constexpr std::size_t kParts = 16;  // each with sums of its own: the same for any number of threads
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto add = [&](const Range& range, std::vector<double> sums) {
+    for (std::size_t j = range.begin(); j < range.end(); ++j) {
+      const Surfel& surfel = surfels[j];
+      const Filter filter(surfel, splatting);
+      search.within(surfel.position, reach_of(surfel, splatting), [&](std::uint32_t i) {
+        stop_if_asked();
+        if (shown_together(surfel, asked[i], splatting.depth_offset))
+          sums[i] += filter.at(asked[i].position);
+      });
     }
-  });
-  return sums;
+    return sums;
+  };
+  const auto both = [](std::vector<double> sums, const std::vector<double>& others) {
+    std::ranges::transform(sums, others, sums.begin(), std::plus());
+    return sums;
+  };
+  return tbb::parallel_deterministic_reduce(Range(0, surfels.size(), surfels.size() / kParts + 1),
+                                            std::vector<double>(asked.size()), add, both);
 }
 
 double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splatting) {

@@ -11,7 +11,7 @@
 
 namespace splatscope::traces {
 
-// Finds the surfels nearest to a surfel. The surfels must outlive it; their positions must be finite. Several
+// Finds the surfels nearest to a surfel, or those about a place. The surfels must outlive it; their positions must be finite. Several
 // threads may search at once, each with a `Found` of its own. Throws Interrupted where it is asked to stop.
 class NeighbourSearch {
  public:
@@ -36,6 +36,14 @@ class NeighbourSearch {
     found.squared_distance.resize(nearest.size());
   }
 
+  // Calls visit(number) for every surfel that lies no further than `reach` from a place, in any order.
+  template <class Visit>
+  void within(const glm::vec3& place, double reach, const Visit& visit) const {
+    const float query[] = {place.x, place.y, place.z};
+    Within<Visit> within{reach * reach, visit};
+    tree_.findNeighbors(within, query, nanoflann::SearchParams());
+  }
+
  private:
   // What nanoflann finds; the names are the library's. It ends a search once all that it asks for lie in the
   // very place, where no other is nearer: thousands of surfels in one place would else go through one
@@ -54,6 +62,18 @@ class NeighbourSearch {
 
    private:
     nanoflann::KNNResultSet<double, std::uint32_t> all_;
+  };
+
+  template <class Visit>
+  struct Within {
+    double squared_reach;
+    const Visit& visit;
+    bool full() const { return true; }
+    double worstDist() const { return squared_reach; }
+    bool addPoint(double squared_distance, std::uint32_t surfel) const {
+      if (squared_distance <= squared_reach) visit(surfel);
+      return true;
+    }
   };
 
   // nanoflann's view of the surfels; its names are the library's.

@@ -259,6 +259,18 @@ TEST(Gamma, CountsAllSplatsThatReachASurfel) {
   EXPECT_NEAR(plane.splatting.gamma, 1 / (1.07 * 1.960), kAtTheCutoff);
 }
 
+// A splat reaches surfels that have more than a thousand small ones nearer to them than its centre.
+TEST(Gamma, CountsLargeSplatsBeyondManySmallOnes) {
+  const Scene plane = parse_scene("[surfels]\ncolumns = 64\nrows = 64\n", "p");
+  std::vector<Surfel> surfels = plane.surfels;
+  const auto in_the_middle = [&] { return filter_sums(surfels, plane.splatting, 1)[32 * 64 + 32]; };
+  const double small = in_the_middle();
+  Surfel large = surfels[0];  // in the corner, 32 sqrt(2) away
+  large.radius = 64;
+  surfels.push_back(large);
+  EXPECT_NEAR(in_the_middle() - small, std::exp(-0.25) / (2 * std::numbers::pi), 1e-6);
+}
+
 // A second layer behind a plane is seen with it where z_t reaches it, else not.
 TEST(Gamma, CountsWhatIsSeenTogether) {
   const Scene plane = parse_scene("[surfels]\ncolumns = 24\nrows = 24\n", "p");

@@ -153,6 +153,38 @@ TEST(Sampler, SpreadsPointsEvenly) {
   }
 }
 
+// A sheet whose left half is two triangles and whose right half is 2 cells x cells.
+Mesh half_finely_cut(int cells) {
+  Mesh mesh;
+  mesh.positions = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const auto row = static_cast<unsigned>(cells) + 1;
+  for (unsigned y = 0; y < row; ++y)
+    for (unsigned x = 0; x < row; ++x)
+      mesh.positions.emplace_back(static_cast<float>(x) / static_cast<float>(cells),
+                                  static_cast<float>(y) / static_cast<float>(cells), 0);
+  for (unsigned y = 0; y + 1 < row; ++y) {
+    for (unsigned x = 0; x + 1 < row; ++x) {
+      const unsigned at = 4 + y * row + x;
+      mesh.triangles.push_back({at, at + 1, at + row + 1});
+      mesh.triangles.push_back({at, at + row + 1, at + row});
+    }
+  }
+  mend(mesh);
+  return mesh;
+}
+
+// Each tenth of the sheet has as many points as its area asks for, to within what lies at its borders: 50
+// of the 500 spaces between points, 50 a row.
+TEST(Sampler, FinelyCutPlacesTakeNoPointsFromCoarseOnes) {
+  constexpr std::size_t kCount = 5000, kTenths = 10;
+  const auto samples = sample_count(half_finely_cut(100), kCount);
+  std::array<std::size_t, kTenths> points{};
+  for (const MeshSample& s : samples)
+    ++points.at(std::min(kTenths - 1, static_cast<std::size_t>((s.position.x + 1) * kTenths / 2)));
+  for (const std::size_t tenth : points) EXPECT_NEAR(static_cast<double>(tenth), kCount / kTenths, 50);
+}
+
 // How unevenly splats add up: the sums, at the points, of Gaussians as wide as half the distance to the
 // eighth neighbour of their centre; their standard deviation in units of the mean.
 double unevenness(const std::vector<MeshSample>& samples) {
