@@ -86,8 +86,7 @@ std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting
       const Filter filter(surfel, splatting);
       search.within(surfel.position, reach_of(surfel, splatting), [&](std::uint32_t i) {
         stop_if_asked();
-        if (shown_together(surfel, asked[i], splatting.depth_offset))
-          sums[i] += filter.at(asked[i].position);
+        if (shown_together(surfel, asked[i], splatting.depth_offset)) sums[i] += filter.at(asked[i].position);
       });
     }
     return sums;

@@ -11,8 +11,9 @@
 
 namespace splatscope::traces {
 
-// Finds the surfels nearest to a surfel, or those about a place. The surfels must outlive it; their positions must be finite. Several
-// threads may search at once, each with a `Found` of its own. Throws Interrupted where it is asked to stop.
+// Finds the surfels nearest to a surfel, or those about a place. The surfels must outlive it; their positions
+// must be finite. Several threads may search at once, each with a `Found` of its own. Throws Interrupted
+// where it is asked to stop.
 class NeighbourSearch {
  public:
   struct Found {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -44,11 +45,14 @@ class Completion {
   void set_waiter(Unit& waiter) { waiter_ = &waiter; }
   void start(Cycle now, std::uint32_t units) {
     outstanding_ = units;
+    last_ = now;
     done_at_ = units == 0 ? now + 1 : kNever;
   }
-  void finish(Cycle now) {
+  // `last`: the cycle in which a unit does the last of its work, this one or a later one.
+  void finish(Cycle last) {
+    last_ = std::max(last_, last);
     if (--outstanding_ == 0) {
-      done_at_ = now + 1;
+      done_at_ = last_ + 1;
       waiter_->wake(done_at_);
     }
   }
@@ -57,6 +61,7 @@ class Completion {
  private:
   Unit* waiter_ = nullptr;
   std::uint32_t outstanding_ = 0;
+  Cycle last_ = 0;
   Cycle done_at_ = kNever;
 };
 
@@ -78,8 +83,9 @@ class DrawUnit : public Unit {
 
   const DrawJob& job() const { return *job_; }
   bool has_work() const { return remaining_ != 0; }
-  void item_done(Cycle now) {
-    if (--remaining_ == 0) completion_.finish(now);
+  // `last`: the last cycle that the item takes of the unit, this one or a later one.
+  void item_done(Cycle last) {
+    if (--remaining_ == 0) completion_.finish(last);
   }
   Step nothing_to_take(Cycle next) const { return has_work() ? starved(next) : idle(next); }
   Completion& completion() { return completion_; }

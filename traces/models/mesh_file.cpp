@@ -92,6 +92,7 @@ class Reader {
   void read_materials() {
     for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
       Materials::Material material;
+      unsigned texcoord_set = 0;
       aiString name;
       aiColor3D color;
       scene_.mMaterials[i]->Get(AI_MATKEY_NAME, name);
@@ -100,15 +101,19 @@ class Reader {
         material.color = {color.r, color.g, color.b};
       for (aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
         aiString texture;
-        if (scene_.mMaterials[i]->GetTexture(type, 0, &texture) != aiReturn_SUCCESS) continue;
+        if (scene_.mMaterials[i]->GetTexture(type, 0, &texture, nullptr, &texcoord_set) != aiReturn_SUCCESS)
+          continue;
         material.texture = texture_of(texture);
         if (!material.texture) ++file_.textures_unreadable;
         break;
       }
       note_texture_files(*scene_.mMaterials[i]);
       materials_->materials.push_back(std::move(material));
+      texcoord_sets_.push_back(texcoord_set);
     }
-    if (materials_->materials.empty()) materials_->materials.emplace_back();
+    if (!materials_->materials.empty()) return;
+    materials_->materials.emplace_back();
+    texcoord_sets_.push_back(0);
   }
 
   // Each is read once, however many materials name it.
@@ -151,7 +156,9 @@ class Reader {
                       fmt::format("has more than {} triangles, or three vertices for each, expected fewer",
                                   kMostTriangles));
     const aiMatrix3x3 turn = aiMatrix3x3(transform).Inverse().Transpose();
-    const bool texcoords = from.HasTextureCoords(0), colors = from.HasVertexColors(0);
+    const std::size_t material = std::min<std::size_t>(from.mMaterialIndex, texcoord_sets_.size() - 1);
+    const unsigned set = texcoord_sets_[material];
+    const bool texcoords = from.HasTextureCoords(set), colors = from.HasVertexColors(0);
     any_normals_ |= from.HasNormals();
     any_texcoords_ |= texcoords;
     any_colors_ |= colors;
@@ -160,16 +167,14 @@ class Reader {
       const aiVector3D n = from.HasNormals() ? turn * from.mNormals[i] : aiVector3D();
       mesh.positions.emplace_back(p.x, p.y, p.z);
       mesh.normals.emplace_back(n.x, n.y, n.z);
-      mesh.texcoords.push_back(texcoords ? glm::vec2(from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y)
-                                         : glm::vec2());
+      mesh.texcoords.push_back(
+          texcoords ? glm::vec2(from.mTextureCoords[set][i].x, from.mTextureCoords[set][i].y) : glm::vec2());
       mesh.colors.push_back(colors
                                 ? glm::vec3(from.mColors[0][i].r, from.mColors[0][i].g, from.mColors[0][i].b)
                                 : glm::vec3(0.85f));
     }
     const auto part = static_cast<std::uint32_t>(materials_->parts.size());
-    const std::size_t last_material = materials_->materials.size() - 1;
-    materials_->parts.push_back(
-        {std::min<std::size_t>(from.mMaterialIndex, last_material), texcoords, colors});
+    materials_->parts.push_back({material, texcoords, colors});
     const bool mirrored = aiMatrix3x3(transform).Determinant() < 0;  // front faces stay front faces
     for (unsigned i = 0; i < from.mNumFaces; ++i) {
       const aiFace& face = from.mFaces[i];
@@ -185,6 +190,7 @@ class Reader {
   const Textures textures_;
   MeshFile file_;
   std::map<std::string, std::shared_ptr<const TextureImage>> texture_by_name_;
+  std::vector<unsigned> texcoord_sets_;  // of a material, that its texture is laid out by
   std::shared_ptr<Materials> materials_ = std::make_shared<Materials>();
   bool any_normals_ = false, any_texcoords_ = false, any_colors_ = false;
 };
@@ -285,13 +291,14 @@ std::uint64_t address_space() {
 
 // Formats whose parts nest are read by functions that call themselves, and a part may stand for copies of
 // copies: a small file can overflow the stack, which nothing catches, or fill all memory. So these are read
-// in a process of its own first, with less stack than this one has, and memory for large files beside it.
+// in a process of its own first, with less stack than a thread of this one has (2 MiB where the shell sets no
+// limit), and memory for large files beside it.
 void expect_bounded(const std::filesystem::path& path) {
   constexpr std::string_view kFlat[] = {".obj", ".off", ".ply", ".stl"};
   if (std::ranges::find(kFlat, ending_of(path)) != std::end(kFlat)) return;
   const auto try_it = [&](std::size_t) {
     limit<RLIMIT_CORE>(0);
-    limit<RLIMIT_STACK>(4 * kMebibyte);
+    limit<RLIMIT_STACK>(kMebibyte);
     std::error_code error;
     const std::uint64_t size = std::filesystem::file_size(path, error);
     if (!error) limit<RLIMIT_AS>(address_space() + 8192 * kMebibyte + 64 * size);

@@ -198,6 +198,36 @@ TEST_F(MeshFileTest, AMirroredNodeKeepsItsFaces) {
   }
 }
 
+// A material says which of a part's layouts its texture goes by: red in the first, blue in the second.
+TEST_F(MeshFileTest, ATextureGoesByTheLayoutThatItsMaterialNames) {
+  file("t.ppm", std::string_view("P6\n2 1\n255\n\xff\0\0\0\0\xff", 17));
+  std::string buffer;
+  for (const float number : {0.f,   0.f,  0.f,   1.f,  0.f,   0.f,  0.f,   1.f,  0.f,   0.25f, 0.5f,
+                             0.25f, 0.5f, 0.25f, 0.5f, 0.75f, 0.5f, 0.75f, 0.5f, 0.75f, 0.5f})
+    buffer.append(reinterpret_cast<const char*>(&number), sizeof(number));
+  file("m.bin", buffer);
+  for (const int set : {0, 1}) {
+    const Scene scene = scene_of("m.gltf",
+                                 fmt::format(R"({{"asset": {{"version": "2.0"}}, "scene": 0,
+      "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}], "meshes": [{{"primitives": [{{"material": 0,
+        "attributes": {{"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2}}}}]}}],
+      "materials": [{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0, "texCoord": {}}}}}}}],
+      "textures": [{{"source": 0}}], "images": [{{"uri": "t.ppm"}}],
+      "accessors": [
+        {{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+          "max": [1, 1, 0]}},
+        {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}},
+        {{"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"}}],
+      "bufferViews": [{{"buffer": 0, "byteLength": 36}}, {{"buffer": 0, "byteOffset": 36, "byteLength": 24}},
+                      {{"buffer": 0, "byteOffset": 60, "byteLength": 24}}],
+      "buffers": [{{"uri": "m.bin", "byteLength": 84}}]}})",
+                                             set),
+                                 "count = 10\nshading = 0\n");
+    for (const Surfel& s : scene.surfels)
+      EXPECT_LT(glm::distance(s.color, set == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1)), 1e-6f) << set;
+  }
+}
+
 TEST_F(MeshFileTest, FilesOfMaterialsThatAreMissingAreCounted) {
   file("here.mtl", "newmtl red\nKd 1 0 0\n");
   const auto missing = [&](const char* mesh, const std::string& libraries) {

@@ -39,8 +39,8 @@ TEST(CommandProcessor, BeginsADrawAndReportsWhenItsUnitsAreDone) {
   command.connect(orders, done, port);
   command.set_draws(jobs, {&setup});
   core.run(kNever - 1);
-  // The last triangle is set up in 31; that is seen in 32, and the report in 33.
-  EXPECT_EQ(reports.taken(), (testing::Timed<std::uint32_t>{{33, 0u}}));
+  // The last triangle takes 31 and 32 of the setup; that is seen in 33, and the report in 34.
+  EXPECT_EQ(reports.taken(), (testing::Timed<std::uint32_t>{{34, 0u}}));
   // Idle until the draw begins in 1, seen in 2; starved until the first triangle; idle again after the last.
   const Books books = core.closed_books(2, 40);
   EXPECT_EQ(books.cycles[Step::kStarved], (21u - 2u) + (31u - 23u));

@@ -20,14 +20,14 @@ Step PixelUnit::advance(Cycle now) {
   if (!in_) return idle();  // before the first draw
   if (!in_->can_pop(now)) return nothing_to_take(in_->next_visible());
   if (!out_->can_push(now)) return blocked(out_->consumer(), out_->next_free());
+  free_from_ = now + job().pixel_clocks;
   for (int i = 0; i < quads_per_clock_ && in_->can_pop(now) && out_->can_push(now); ++i) {
     const std::uint32_t quad = in_->pop(now);
     out_->push(now, quad);
     event(now, quad);
     ++quads_;
-    item_done(now);
+    item_done(free_from_ - 1);
   }
-  free_from_ = now + job().pixel_clocks;
   return busy(free_from_);
 }
 

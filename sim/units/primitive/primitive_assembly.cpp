@@ -20,7 +20,6 @@ void PrimitiveAssembly::connect(Channel<std::uint8_t>& order, std::vector<Channe
 std::uint64_t PrimitiveAssembly::start(const DrawJob& job) {
   triangle_ = 0;
   vertices_ = 0;
-  free_from_ = 0;
   next_mark_ = 0;
   return job.work->triangles.size();
 }
@@ -56,7 +55,7 @@ bool PrimitiveAssembly::assemble(Cycle now) {
     tell_(now);
   }
   ++triangle_;
-  item_done(now);
+  item_done(free_from_ - 1);
   if (report_ && (assembled_ + rejected_) % kReportEvery == 0) report_(assembled_ + rejected_);
   return true;
 }

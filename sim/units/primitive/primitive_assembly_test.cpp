@@ -59,5 +59,14 @@ TEST(PrimitiveAssembly, RejectedTrianglesEndHereAndClippedOnesTakeLonger) {
             (Timed<std::uint32_t>{{6, 1u}, {15, 2u}}));
 }
 
+// The last clocks of a draw belong to it, also where nothing goes on.
+TEST(PrimitiveAssembly, ADrawLastsUntilItsLastTriangleIsAssembled) {
+  testing::TestDraw draw;
+  draw.add_triangle(3, 0, 0, 0);
+  Cycle done = 0;
+  EXPECT_TRUE(assemble(draw, {{0, 0}, {0, 1}, {0, 2}}, {14, 4, 8}, done).empty());
+  EXPECT_EQ(done, 4u + 14u);
+}
+
 }  // namespace
 }  // namespace splatscope::sim

@@ -24,7 +24,7 @@ Step TriangleSetup::advance(Cycle now) {
   free_from_ = now + pieces * static_cast<Cycle>(spec_.clocks_per_triangle);
   triangles_ += pieces;
   event(now, triangle);
-  item_done(now);
+  item_done(free_from_ - 1);
   return busy(free_from_);
 }
 

@@ -28,7 +28,7 @@ TEST(TriangleSetup, TakesItsClocksForEachPiece) {
   bench.run();
   // Taken at 1, 3 and (three pieces of two clocks) 9; ten clocks through.
   EXPECT_EQ(sink.taken(), (Timed<std::uint32_t>{{11, 0u}, {13, 1u}, {19, 2u}}));
-  EXPECT_EQ(bench.done_at(), 10u);
+  EXPECT_EQ(bench.done_at(), 11u) << "the last takes 9 and 10";
 }
 
 }  // namespace
