@@ -8,6 +8,7 @@
 #include "model/isa/opcode.h"
 #include "model/isa/program.h"
 #include "model/number/frame_value.h"
+#include "model/pixel/pixel_program.h"
 
 namespace splatscope::sim {
 namespace {
@@ -55,6 +56,23 @@ class Allocator {
 isa::Program load(const Trace& trace, std::uint32_t program) {
   return isa::load(trace.programs[program].text, trace.programs[program].name);
 }
+
+// Which programs of a trace sample a texture. A program that draws share is looked at once.
+class SamplingPrograms {
+ public:
+  explicit SamplingPrograms(const Trace& trace) : trace_(trace) {}
+
+  bool sample(const Draw& draw) {
+    if (!binds_texture(draw) || !draw.pixel_program) return false;
+    const auto [known, is_new] = samples_.try_emplace(*draw.pixel_program, false);
+    if (is_new) known->second = pixel::PixelProgram(load(trace_, *draw.pixel_program)).texture_stages() != 0;
+    return known->second;
+  }
+
+ private:
+  const Trace& trace_;
+  std::map<std::uint32_t, bool> samples_;
+};
 
 }  // namespace
 
@@ -112,6 +130,7 @@ MemoryLayout lay_out(const Trace& trace, const Machine& machine) {
 
 Needs needs_of(const Trace& trace) {
   Needs needs;
+  SamplingPrograms programs(trace);
   for (const Command& command : trace.commands) {
     const Draw* draw = std::get_if<Draw>(&command);
     if (!draw) continue;
@@ -120,13 +139,14 @@ Needs needs_of(const Trace& trace) {
     }
     needs.depth |= uses_depth(*draw);
     needs.color |= draw->state.color_write;
-    needs.texture |= uses_texture(*draw);
+    needs.texture |= programs.sample(*draw);
   }
   return needs;
 }
 
 PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout) {
   PreparedDraws prepared;
+  SamplingPrograms programs(trace);
   std::map<std::uint32_t, std::size_t> program_numbers;
   std::map<std::uint32_t, std::uint64_t> pixel_clocks;  // by program
   for (std::size_t command = 0; command < trace.commands.size(); ++command) {
@@ -146,6 +166,7 @@ PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const Me
       if (is_new) known->second = clocks_per_quad(load(trace, *draw->pixel_program), machine.pixel);
       job.pixel_clocks = known->second;
     }
+    job.textured = programs.sample(*draw);
     job.vertex_address = layout.buffers[draw->vertex_buffer];
     job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
     if (draw->texture) job.texture_address = layout.textures[*draw->texture];

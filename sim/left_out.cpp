@@ -56,7 +56,7 @@ void add_color(List& list, const Needs& built) {
                  "they write no colour");
   if (built.texture) {
     list.add_draws(
-        "texture", [&](const DrawJob& job) { return !is_dark(job) && !uses_texture(*job.draw); },
+        "texture", [&](const DrawJob& job) { return !is_dark(job) && !job.textured; },
         "they write colour and sample no texture");
   }
   if (!list.any_blends()) return list.add_unit("destination read", "no draw blends");

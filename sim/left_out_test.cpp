@@ -18,9 +18,11 @@ using List = std::vector<UnitLeftOut>;
 struct Draws {
   explicit Draws(std::size_t count) : draws(count) {
     trace.buffers = {{MemoryPlace::agp, {}}, {MemoryPlace::video, {}}};
+    trace.programs = {{"sampling.ps", "ps_1_1\ntex t0\nmov r0, t0\n"}};
     for (Draw& draw : draws) {
       draw.index_count = 30;
       draw.texture = 0;
+      draw.pixel_program = 0;
       draw.state = {true, true, true, true, BlendFactor::one, BlendFactor::one};
     }
   }
@@ -31,6 +33,7 @@ struct Draws {
     std::vector<DrawJob> jobs(draws.size());
     for (std::size_t i = 0; i < draws.size(); ++i) {
       jobs[i].draw = &draws[i];
+      jobs[i].textured = binds_texture(draws[i]);
       jobs[i].triangles_clipped = clipped;
     }
     return sim::left_out(whole, needs_of(whole), jobs);

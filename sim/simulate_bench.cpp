@@ -30,7 +30,7 @@ void draw_past(benchmark::State& state, Scheduler scheduler, void (*change)(Draw
   testing::RandomTrace made = testing::simple_trace(5000);
   Draw& draw = std::get<Draw>(made.trace.commands[1]);
   change(draw);
-  if (!uses_texture(draw)) {
+  if (!binds_texture(draw)) {
     for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
     made.work[0].texel_blocks.clear();
   }

@@ -160,6 +160,23 @@ TEST(Simulate, UnitsThatNoDrawNeedsAreLeftOut) {
   EXPECT_EQ(books_of(simulate(made.trace, made.work, machine), "depth"), nullptr);
 }
 
+// A texture that the pixel program does not sample is as none, on the machine and in an estimate.
+TEST(Simulate, ATextureThatNoProgramSamplesCostsNothing) {
+  RandomTrace made = simple_trace(10);
+  for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
+  made.work[0].texel_blocks.clear();
+  Draw& draw = std::get<Draw>(made.trace.commands[1]);
+  const Machine machine = machine::load("geforce4-ti4400");
+  const auto result = [&] { return simulate(made.trace, made.work, machine); };
+  const Cycle sampled = result().cycles;
+  made.trace.programs[2].text = "ps_1_1\nmov r0, v0\n";
+  const Result bound = result();
+  draw.texture.reset();
+  EXPECT_EQ(bound.cycles, result().cycles);
+  EXPECT_LT(bound.cycles, sampled);
+  EXPECT_EQ(units_without(bound), (std::vector<std::string>{"agp", "texture"}));
+}
+
 TEST(Simulate, ASecondVertexUnitHalvesAVertexBoundDraw) {
   const RandomTrace made = simple_trace(1200);
   Machine machine = machine::load("geforce4-ti4400");

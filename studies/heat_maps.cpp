@@ -42,7 +42,6 @@ HeatMaps::HeatMaps(const Trace& trace, bool cycles)
 }
 
 void HeatMaps::add(const DrawWork& work) {
-  const Draw& draw = std::get<Draw>(trace_.commands[work.command]);
   for (const QuadWork& quad : work.quads) {
     for (std::uint32_t bit = 0; bit < 4; ++bit) {
       if ((quad.covered >> bit & 1) == 0) continue;
@@ -50,7 +49,7 @@ void HeatMaps::add(const DrawWork& work) {
       count(overdraw_, x, y, 1);
       if ((quad.passed >> bit & 1) == 0) count(depth_fails_, x, y, 1);
     }
-    if (uses_texture(draw)) count(texel_fetches_, quad.x, quad.y, quad.texel_block_count);
+    count(texel_fetches_, quad.x, quad.y, quad.texel_block_count);
   }
 }
 

@@ -88,7 +88,8 @@ struct Draw {
 inline bool uses_depth(const Draw& draw) {
   return draw.state.depth_test || draw.state.depth_write;
 }
-inline bool uses_texture(const Draw& draw) {
+// Whether its pixel program samples the texture too, its program tells (`sim/draw_jobs.h`).
+inline bool binds_texture(const Draw& draw) {
   return draw.state.color_write && (draw.texture.has_value() || draw.source.has_value());
 }
 

@@ -80,7 +80,7 @@ class ThroughputEstimate::State {
     const bool color = job.draw->state.color_write;  // else a quad ends at the depth test, before its latency
     const double triangles = busy[kSetup] > 0 ? machine_.setup.latency + machine_.raster.latency : 0;
     const double depth = busy[kDepth] > 0 && color && uses_depth(*job.draw) ? machine_.depth.latency : 0;
-    const double texture = busy[kBlend] > 0 && uses_texture(*job.draw) ? machine_.texture.latency : 0;
+    const double texture = busy[kBlend] > 0 && job.textured ? machine_.texture.latency : 0;
     const double pixels = busy[kBlend] > 0 ? machine_.pixel.latency : 0;
     return read + vertex + triangles + depth + texture + pixels;
   }

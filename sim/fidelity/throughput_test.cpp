@@ -99,7 +99,7 @@ TEST(Throughput, ADrawPaysForTheUnitsThatItUsesAlone) {
   const auto cycles_of = [](const Draw& draw, int depth, int texture, int pixel, bool simulated = false) {
     RandomTrace made = testing::simple_trace(1);
     std::get<Draw>(made.trace.commands[1]) = draw;
-    if (!uses_texture(draw)) {
+    if (!binds_texture(draw)) {
       for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
       made.work[0].texel_blocks.clear();
     }

@@ -165,6 +165,7 @@ struct TestDraw {
   const DrawJob& prepare() {
     job.draw = &draw;
     job.work = &work;
+    job.textured = binds_texture(draw);
     job.triangles_set_up = 0;
     job.colored_quads = 0;
     for (const TriangleWork& triangle : work.triangles) job.triangles_set_up += triangle.pieces != 0;

@@ -157,7 +157,7 @@ class RandomMaker {
       quad.y = static_cast<std::uint16_t>(number(0, (trace.height - 1) / 2));
       quad.covered = static_cast<std::uint8_t>(number(1, 15));
       quad.passed = static_cast<std::uint8_t>(quad.covered & number(0, 15));
-      const bool sampled = (draw.texture || draw.source) && draw.state.color_write && quad.passed != 0;
+      const bool sampled = binds_texture(draw) && draw.pixel_program && quad.passed != 0;
       quad.texel_block_count = static_cast<std::uint8_t>(sampled ? number(1, 4) : 0);
       for (int block = 0; block < quad.texel_block_count; ++block)
         work.texel_blocks.push_back(number(0, 255));
@@ -181,6 +181,7 @@ inline RandomTrace simple_trace(int triangles) {
   draw.index_buffer = 1;
   draw.index_count = static_cast<std::uint32_t>(3 * triangles);
   draw.state.blend = true;
+  draw.pixel_program = 2;
   draw.texture = 0;
   DrawWork work;
   work.command = 1;

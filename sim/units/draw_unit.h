@@ -22,6 +22,7 @@ struct DrawJob {
   const Draw* draw = nullptr;
   const DrawWork* work = nullptr;    // null before the draw begins, where it is computed beside
   std::uint32_t command = 0;         // its place in the trace
+  bool textured = false;             // its quads go through the texture unit
   std::size_t vertex_program = 0;    // which of the programs of the vertex units
   std::uint64_t pixel_clocks = 1;    // a quad, of the pixel unit
   std::uint32_t vertex_address = 0;  // of base vertex 0, in the memory it lies in

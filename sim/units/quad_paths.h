@@ -14,9 +14,9 @@ struct QuadSources {
   Quads* texture = nullptr;
 
   // Of a unit behind those that are given.
-  Quads* of(const Draw& draw) const {
-    if (texture && uses_texture(draw)) return texture;
-    return depth && uses_depth(draw) ? depth : raster;
+  Quads* of(const DrawJob& job) const {
+    if (texture && job.textured) return texture;
+    return depth && uses_depth(*job.draw) ? depth : raster;
   }
 };
 
@@ -27,10 +27,10 @@ struct QuadTargets {
   Quads* pixel = nullptr;
 
   // Null: quads of this draw end here.
-  Quads* of(const Draw& draw) const {
-    if (depth && uses_depth(draw)) return depth;
-    if (!draw.state.color_write) return nullptr;
-    return texture && uses_texture(draw) ? texture : pixel;
+  Quads* of(const DrawJob& job) const {
+    if (depth && uses_depth(*job.draw)) return depth;
+    if (!job.draw->state.color_write) return nullptr;
+    return texture && job.textured ? texture : pixel;
   }
 };
 

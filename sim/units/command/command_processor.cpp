@@ -36,7 +36,7 @@ void CommandProcessor::begin(Cycle now, const Order& order) {
     case OrderKind::draw:
       if (prepare_) prepare_(order.job);
       // A surface that is sampled must be in memory.
-      if ((*jobs_)[order.job].draw->source) {
+      if ((*jobs_)[order.job].textured && (*jobs_)[order.job].draw->source) {
         after_flush_ = &(*jobs_)[order.job];
         return begin_flush(now);
       }

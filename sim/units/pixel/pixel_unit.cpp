@@ -11,7 +11,7 @@ void PixelUnit::connect(const QuadSources& in, Quads& out) {
 }
 
 std::uint64_t PixelUnit::start(const DrawJob& job) {
-  in_ = sources_.of(*job.draw);
+  in_ = sources_.of(job);
   return job.colored_quads;
 }
 

@@ -15,7 +15,7 @@ void Rasteriser::connect(Channel<std::uint32_t>& in, const QuadTargets& out) {
 
 std::uint64_t Rasteriser::start(const DrawJob& job) {
   next_quad_ = 0;
-  out_ = targets_.of(*job.draw);
+  out_ = targets_.of(job);
   all_quads_ = uses_depth(*job.draw);
   return job.triangles_set_up;
 }

@@ -21,8 +21,8 @@ void TextureUnit::connect(const QuadSources& in, Quads& out, MemoryPort& port) {
 }
 
 std::uint64_t TextureUnit::start(const DrawJob& job) {
-  if (!uses_texture(*job.draw)) return 0;
-  in_ = sources_.of(*job.draw);
+  if (!job.textured) return 0;
+  in_ = sources_.of(job);
   cache_.connect(*port_, job.texture_address);
   cache_.set_fill(static_cast<std::uint32_t>(job.draw->source ? spec_.line_bytes : spec_.fill_bytes));
   cache_.invalidate();
