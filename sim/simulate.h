@@ -61,7 +61,8 @@ struct Result {
   double share(Cycle some) const {
     return cycles == 0 ? 0 : static_cast<double>(some) / static_cast<double>(cycles);
   }
-  // The unit that was busy for the largest share of the run: its bottleneck.
+  // The unit that was busy for the largest share of the run. A memory channel or AGP is busy also while the
+  // latency of a request passes: at 90 % its data bus may be half empty (`data_clocks`).
   const UnitBooks& busiest() const { return *std::ranges::max_element(units, {}, &UnitBooks::busy); }
   // 0 where they take no time.
   double frames_per_second() const { return rate(static_cast<double>(frame_cycles.size()), seconds); }

@@ -155,7 +155,7 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   row.capture_seconds = seconds_since(start);
   row.unseen = captured.unseen;
   std::vector<traces::VertexWeights> exact;
-  for (const double sum : traces::filter_sums(scene.surfels, scene.splatting, 1))
+  for (const double sum : traces::filter_sums(scene.surfels, scene.splatting, scene.surfels))
     exact.push_back(traces::equal_weights(1 / sum));
 
   row.exact = compare(frame_of(draw_exactly(scene, exact)), reference);

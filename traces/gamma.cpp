@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
@@ -17,11 +18,8 @@
 namespace splatscope::traces {
 namespace {
 
-constexpr std::size_t kAsked = 10000;  // surfels
-// The largest sum between the surfels of a square grid is 1.355, that at them 1.275: 1.063 times as much. A
-// little is left to grids that are not square.
-constexpr double kBetween = 1.07;
-constexpr double kShare = 0.99;  // of the surfels whose sums do not saturate
+constexpr std::size_t kAsked = 10000;  // places
+constexpr double kShare = 0.99;        // of the places whose sums do not saturate
 
 // r_j of Ren 2002, Eq. 1: in the plane of surfel j, in units of its radius.
 class Filter {
@@ -69,14 +67,27 @@ double reach_of(const Surfel& surfel, const Splatting& splatting) {
   return kRounding * std::hypot(filter, splatting.depth_offset);
 }
 
+// A place about every `step`th surfel, in its plane and within half its radius: all of the surface between
+// surfels of a grid, whose radius is twice as far as its middles lie. Spread evenly (Roberts's R2).
+std::vector<Surfel> places_about(std::span<const Surfel> surfels, std::size_t step) {
+  std::vector<Surfel> places;
+  for (std::size_t i = 0; i < surfels.size(); i += step) {
+    const auto number = static_cast<double>(places.size());
+    const double angle = 2 * std::numbers::pi * glm::fract(0.7548776662466927 * number);
+    const double radius = 0.5 * std::sqrt(glm::fract(0.5698402909980532 * number));
+    const auto [s, t] = tangents(surfels[i]);
+    places.push_back(surfels[i]);
+    places.back().position += glm::vec3(radius * (std::cos(angle) * s + std::sin(angle) * t));
+  }
+  return places;
+}
+
 }  // namespace
 
-// Each surfel adds its filter to those asked that it reaches: so that none is missed, however small the
+// Each surfel adds its filter to the places that it reaches: so that none is missed, however small the
 // surfels are that lie between.
 std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting& splatting,
-                                std::size_t step) {
-  std::vector<Surfel> asked;
-  for (std::size_t i = 0; i < surfels.size(); i += step) asked.push_back(surfels[i]);
+                                std::span<const Surfel> asked) {
   const NeighbourSearch search(asked);
   constexpr std::size_t kParts = 16;  // each with sums of its own: the same for any number of threads
   using Range = tbb::blocked_range<std::size_t>;
@@ -101,10 +112,11 @@ std::vector<double> filter_sums(std::span<const Surfel> surfels, const Splatting
 
 double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splatting) {
   if (surfels.empty()) return kPaperGamma;
-  std::vector<double> sums = filter_sums(surfels, splatting, surfels.size() / kAsked + 1);
+  const std::vector<Surfel> places = places_about(surfels, (surfels.size() + kAsked - 1) / kAsked);
+  std::vector<double> sums = filter_sums(surfels, splatting, places);
   const auto high = sums.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sums.size() - 1));
   std::ranges::nth_element(sums, high);
-  return std::min(kPaperGamma, 1 / (kBetween * *high));
+  return std::min(kPaperGamma, 1 / *high);
 }
 
 }  // namespace splatscope::traces
