@@ -64,6 +64,19 @@ void refuse_empty_values(CLI::App& command) {
   for (CLI::App* part : command.get_subcommands([](CLI::App*) { return true; })) refuse_empty_values(*part);
 }
 
+// Where a word stands in the place of a command: that, and which there are. Empty: it is something else.
+std::string unknown_command(const CLI::App& app) {
+  const std::vector<std::string> left = app.remaining(true);
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  std::vector<std::string> names;
+  for (const CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(part->get_name());
+  if (left.empty() || left.front().starts_with('-') || names.empty()) return {};
+  return one_line(
+      fmt::format("splatscope: no command \"{}\", expected {}", left.front(), fmt::join(names, ", ")));
+}
+
 int run(int argc, const char* const* argv) {
   CLI::App app("splatscope: a cycle-level simulator of a programmable GPU of 2002, and EWA splatting on it");
   app.require_subcommand(1);
@@ -88,6 +101,10 @@ int run(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    if (const std::string unknown = unknown_command(app); !unknown.empty()) {
+      std::cerr << unknown << '\n';
+      return kBadInput;
+    }
     std::cerr << "splatscope: " << one_line(error.what()) << " (--help says what is expected)\n";
     return kBadInput;
   }

@@ -208,6 +208,7 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   FrameRun run = run_it();
   run.host_seconds = seconds_since(start);
   if (timing.heat_maps) run.heat_maps = timing.heat_maps->maps();
+  if (fidelity == Fidelity::sampled) run.seed = timing.seed;
   return run;
 }
 

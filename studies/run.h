@@ -76,6 +76,7 @@ struct FrameRun {
   double timing_seconds = 0;                  // of these, for the timing
   std::vector<HeatMap> heat_maps;             // where they are asked for
   std::optional<AgainstReference> reference;  // where it is asked for
+  std::optional<std::uint64_t> seed = {};     // of the samples of `sampled`
 };
 
 struct TimingOptions {

@@ -19,7 +19,7 @@ Json frames_json(const sim::Result& timing) {
     Json frame = {{"cycles", cycles},
                   {"milliseconds", 1000 * timing.seconds_of(cycles)},
                   {"frames_per_second", timing.frames_per_second(cycles)}};
-    if (timing.cycles_plus_minus > 0) frame["cycles_plus_minus"] = timing.frame_plus_minus[i];
+    if (!timing.frame_plus_minus.empty()) frame["cycles_plus_minus"] = timing.frame_plus_minus[i];
     // Of the whole run; an estimate has no events.
     if (timing.event_hash != 0) frame["event_hash"] = fmt::format("{:016x}", timing.event_hash);
     out.push_back(std::move(frame));
@@ -176,12 +176,21 @@ nlohmann::ordered_json timing_json(const sim::Result& timing) {
           {"units_left_out", left_out_json(timing)}};
 }
 
+nlohmann::ordered_json settings_json(const Machine& machine) {
+  Json settings = Json::object();
+  for (const machine::ParameterValue& parameter : machine::describe(machine))
+    if (parameter.origin.confidence == "set") settings[parameter.name] = parameter.value;
+  return settings;
+}
+
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
                                   const FrameRun& run) {
   Json results;
   results["input"] = input.name;
   results["machine"] = machine.name;
+  results["set"] = settings_json(machine);
   results["fidelity"] = name(fidelity);
+  if (run.seed) results["seed"] = *run.seed;
   results["frames"] = frames_json(run, frame_ends(input.trace).size());
   results["programs"] = Json::array();
   for (const ShaderText& program : input.trace.programs) {

@@ -12,6 +12,9 @@ namespace splatscope::studies {
 // them.
 nlohmann::ordered_json timing_json(const sim::Result& timing);
 
+// The parameters of a machine that the command line set, as TOML: {"vertex.units": "4"}.
+nlohmann::ordered_json settings_json(const Machine& machine);
+
 // The figures of a run, as the documentation of result files lists them.
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
                                   const FrameRun& run);

@@ -181,7 +181,10 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
 }
 
 nlohmann::ordered_json results_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity) {
-  Json results = {{"input", sweep.input.name}, {"machine", machine.name}, {"fidelity", name(fidelity)}};
+  Json results = {{"input", sweep.input.name},
+                  {"machine", machine.name},
+                  {"set", settings_json(machine)},  // for all points
+                  {"fidelity", name(fidelity)}};
   results["points"] = Json::array();
   for (const SweepPoint& point : sweep.points) {
     Json entry = {{"set", Json::object()}};

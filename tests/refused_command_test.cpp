@@ -23,6 +23,16 @@ TEST(CommandLine, AStandardStreamIsNoPlaceForAFile) {
   }
 }
 
+// The word that is wrong, and what may stand there.
+TEST(CommandLine, AnUnknownCommandIsNamed) {
+  const ScratchFolder folder;
+  expect_refused(run_program({"rnu", "small.toml"}, folder.path()),
+                 "no command \"rnu\", expected reproduce, run, ");
+  expect_refused(run_program({"shader", "chek", "x.vs"}, folder.path()),
+                 "no command \"chek\", expected check, count, ");
+  expect_refused(run_program({"shader"}, folder.path()), "A subcommand is required");
+}
+
 // Parameters that fit together may come in any order, and some of them from a sweep.
 TEST(CommandLine, TheOrderOfSettingsDoesNotMatter) {
   const ScratchFolder folder;

@@ -52,6 +52,25 @@ TEST(CommandLine, RunWritesItsResults) {
             std::string::npos);
 }
 
+// A script that reads the results can tell what was run.
+TEST(CommandLine, TheResultsSayWhatWasSet) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const auto results_of = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"small.toml", "--set", "memory.channels=2", "--fidelity", "sampled"});
+    const Outcome outcome = run_program(arguments, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return nlohmann::json::parse(text_of(folder.path() / arguments[2] / "results.json"));
+  };
+  const auto run = results_of({"run", "--out", "a", "--seed", "7"});
+  EXPECT_EQ(run["set"], (nlohmann::json{{"memory.channels", "2"}}));
+  EXPECT_EQ(run["seed"], 7);
+  EXPECT_EQ(run["frames"][0]["cycles_plus_minus"], 0.0) << "short draws are simulated whole";
+  const auto swept = results_of({"sweep", "--out", "b", "--sweep", "vertex.units=1,2"});
+  EXPECT_EQ(swept["set"], run["set"]);
+  EXPECT_EQ(swept["points"][0]["set"], (nlohmann::json{{"vertex.units", "1"}}));
+}
+
 // Names of files are bytes, and JSON is UTF-8: what it cannot hold is replaced.
 TEST(CommandLine, ASceneMayHaveANameThatIsNoText) {
   const ScratchFolder folder;

@@ -257,6 +257,7 @@ Machine parse(std::string_view text, std::string_view file) {
     machine = load(name);
   }
   machine.name = std::string(stem(file));
+  if (root.contains("base")) machine.title += fmt::format(", changed by {}", machine.name);
   for (const auto& [key, node] : root) {
     if (key == "base") continue;
     if (key == "title") {

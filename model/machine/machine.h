@@ -129,7 +129,7 @@ struct Machine {
   Host host;
 
   // Where a value came from; `confidence` is published, measured, inferred, fitted or stand-in ("default": no
-  // file gave it; "set": the command line did). `fitted_to` names the published row, as in "table1
+  // file gave it; "set": the command line did). `fitted_to` names the published rows, as in "table1
   // ewa-per-pixel".
   struct Origin {
     std::string confidence = "default";

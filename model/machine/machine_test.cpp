@@ -91,6 +91,7 @@ TEST(Machine, AFileWithoutABaseIsAMachineOfItsOwn) {
   EXPECT_EQ(message_of("[vertex]\nunits = 3\n"), "m.toml: no base and no title" + expected);
   EXPECT_EQ(message_of("title = \"Mine\"\n"), "m.toml: no base and no parameters" + expected);
   EXPECT_EQ(parse("title = \"Mine\"\n[vertex]\nunits = 3\n", "m.toml").vertex.units, 3);
+  EXPECT_EQ(parse("base = \"radeon-8500\"\n", "m.toml").title, "ATI Radeon 8500 (R200), changed by m");
   EXPECT_EQ(parse("base = \"radeon-8500\"\n", "m.toml").memory.channels, 2);
 }
 

@@ -21,10 +21,12 @@ constexpr Published kPublished[] = {
     {"ewa-per-surfel", "radeon-8500", 16.9}, {"ewa-per-surfel", "geforce4-ti4400", 23.8},
 };
 
-// The parameter fitted to a row, or nothing: machine files name the rows, as in "table1 ewa-per-pixel".
+// The parameter fitted to a row, or nothing: machine files name the rows, as in "table1 ewa-per-surfel,
+// no-ewa".
 std::string fitted_parameter(const Machine& machine, std::string_view algorithm) {
   for (const auto& [parameter, origin] : machine.origins) {
-    if (origin.fitted_to == fmt::format("table1 {}", algorithm)) return parameter;
+    if (origin.fitted_to.starts_with("table1 ") && origin.fitted_to.find(algorithm) != std::string::npos)
+      return parameter;
   }
   return {};
 }
@@ -73,9 +75,8 @@ void add_to(Findings& findings, const std::vector<Table1Row>& table) {
   }
   findings.table(
       "64k-surfel checkerboard plane. VS1, VS2: instruction slots of the two passes, counted from the "
-      "programs "
-      "that ran. A row is fitted where a parameter of the machine was fitted to that very figure, else "
-      "predicted.",
+      "programs that ran. A row is fitted where a parameter of the machine was fitted to that very figure, "
+      "or chosen by it, else predicted.",
       {{"algorithm"},
        {"machine"},
        {"VS1", number},

@@ -21,8 +21,11 @@ struct Table2Model {
   } published[2];
 };
 std::span<const Table2Model> table2_models();
-// The stand-in as it is drawn, but for its frame's size.
+// The stand-in as it is drawn, but for its frame's size and the card's memory.
 traces::Scene table2_scene(const Table2Model& model, const Progress& progress = {});
+
+// MiB that are free for vertices on a card with 64 MB, the Radeon 8500, or with 128, the Ti 4400.
+double free_video_memory(std::string_view machine);
 
 struct Table2Row {
   std::string model;
