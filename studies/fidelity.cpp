@@ -137,7 +137,12 @@ std::vector<FidelityRow> all_table2_rows(const Progress& progress) {
     for (const auto& published : model.published) {
       scene.frame.width = scene.frame.height = published.resolution;
       const double next = done + static_cast<double>(model.points) / static_cast<double>(points);
-      const auto frame = fidelity_rows(frame_of(scene), kFidelityRepetitions, part(progress, done, next));
+      const FidelityFrame drawn{scene.name, published.resolution, [scene](const Machine& machine) {
+                                  traces::Scene on_card = scene;
+                                  on_card.splatting.video_megabytes = free_video_memory(machine.name);
+                                  return traces::record(on_card, machine.numbers).trace;
+                                }};
+      const auto frame = fidelity_rows(drawn, kFidelityRepetitions, part(progress, done, next));
       rows.insert(rows.end(), frame.begin(), frame.end());
       done = next;
     }

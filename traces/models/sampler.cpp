@@ -62,8 +62,10 @@ class Sampler {
     states_.resize(cells);
     places_.resize(cells * kPlaces);
     around_.resize(cells);
+    sampled_.resize(voxels_.triangles.size());
     tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t i) {
       stop_if_asked();
+      states_[i].unsampled = static_cast<std::uint32_t>(voxels_.triangles_of(i).size());
       const SampledCell cell = seen(i);
       for (std::size_t p = 0; p < kPlaces; ++p) places_[i * kPlaces + p] = try_place(cell, p);
       around_[i] = find_around(i);
@@ -95,6 +97,7 @@ class Sampler {
 
  private:
   struct State {
+    std::uint32_t unsampled = 0;
     std::uint32_t samples = 0;
     std::uint32_t last = kNone;   // of its points; the others by next_
     std::uint32_t taken = kNone;  // of its places, the one that was taken last
@@ -111,9 +114,8 @@ class Sampler {
   };
 
   SampledCell seen(std::size_t i) const {
-    const auto triangles = voxels_.triangles_of(i);
-    const std::size_t samples = states_[i].samples;
-    return {voxels_.center(i), voxels_.size, triangles, samples == 0 ? triangles.size() : 0, samples, i};
+    return {voxels_.center(i),    voxels_.size,       voxels_.triangles_of(i),
+            states_[i].unsampled, states_[i].samples, i};
   }
 
   Entry entry(std::size_t i) const {
@@ -172,6 +174,24 @@ class Sampler {
     next_.push_back(state.last);
     state.last = static_cast<std::uint32_t>(points_.size() - 1);
     ++state.samples;
+    mark_sampled(i, points_.back());
+  }
+
+  void mark_sampled(std::uint32_t i, const MeshSample& point) {
+    State& state = states_[i];
+    if (state.unsampled == 0) return;
+    const auto triangles = voxels_.triangles_of(i);
+    const double reach = 0.5 * std::max({voxels_.size.x, voxels_.size.y, voxels_.size.z});
+    const glm::dvec3 position(point.position);
+    for (std::size_t n = 0; n < triangles.size(); ++n) {
+      char& sampled = sampled_[voxels_.first[i] + n];
+      if (sampled != 0) continue;
+      const Triangle t = triangle_of(mesh_, triangles[n]);
+      const bool near = distance2(point_at(t, closest_point(t, position)), position) < reach * reach;
+      if (!near && triangles[n] != point.triangle) continue;
+      sampled = 1;
+      --state.unsampled;
+    }
   }
 
   std::vector<MeshSample> in_order() const {
@@ -231,6 +251,7 @@ class Sampler {
   Voxels voxels_;
   VoxelIndex index_;
   std::vector<State> states_;
+  std::vector<char> sampled_;  // of voxels_.triangles
   std::vector<Around> around_;
   std::vector<MeshSample> places_;  // kPlaces a cell, ready to be taken
   std::vector<MeshSample> points_;
@@ -240,6 +261,8 @@ class Sampler {
 }  // namespace
 
 double unsampled_triangles(const SampledCell& cell) {
+  constexpr double kEmpty = 1e12;  // more than there are triangles
+  if (cell.samples == 0) return kEmpty + static_cast<double>(cell.unsampled);
   return cell.unsampled > 0 ? static_cast<double>(cell.unsampled) : -static_cast<double>(cell.samples);
 }
 

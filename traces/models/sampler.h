@@ -18,7 +18,7 @@ struct SampledCell {
   glm::dvec3 center{};                       // object units
   glm::dvec3 dimensions{};                   // along x, y, z
   std::span<const std::uint32_t> triangles;  // that overlap it
-  std::size_t unsampled = 0;                 // of these: all before the first point, then none
+  std::size_t unsampled = 0;                 // of these
   std::size_t samples = 0;                   // points taken from this cell
   std::size_t number = 0;                    // of the cell, in the order of the tree
 };
@@ -29,10 +29,9 @@ using Priority = std::function<double(const SampledCell&)>;
 // `index` counts the places tried in this cell.
 using Distribution = std::function<glm::dvec3(const SampledCell&, std::size_t index)>;
 
-// The number of un-sampled triangles. A point samples all triangles of its cell ("our strategy is to minimize
-// the priority value of a voxel after sampling"), however finely the mesh is cut there: were it fewer, finely
-// cut places would take the points of coarse ones. Where none is left, the cells with the fewest points go
-// first.
+// The number of un-sampled triangles. A point samples the triangles of its cell that are nearer to it than
+// half the cell; where none is left, the cells with the fewest points go first. Before all of them go cells
+// without a point, or finely cut places would take the points of coarse ones and leave holes there.
 double unsampled_triangles(const SampledCell& cell);
 
 // A sequence of low discrepancy, shifted at random from cell to cell.
