@@ -182,7 +182,7 @@ void run(const Options& options, bool quiet) {
 void add_observe_options(CLI::App& command, studies::ObserveOptions& observe) {
   CLI::Option* timeline = command.add_option("--timeline", observe.timeline,
                                              "a file for Perfetto: what each unit did when, queues, memory");
-  const auto add_window = [&command](const char* name, studies::CycleWindow& window, CLI::Option* of) {
+  const auto add_window = [&command](const char* name, sim::LogWindow& window, CLI::Option* of) {
     const auto take = [name, &window](const std::string& text) { window = studies::window_of(text, name); };
     command.add_option_function<std::string>(name, take, "FIRST:LAST: core cycles that it shows")->needs(of);
   };

@@ -72,9 +72,10 @@ void end_worker_threads() {
   oneapi::tbb::finalize(scheduler, std::nothrow);
 }
 
-// What a child does: every `step`-th task.
+// What a child does: every `step`-th task. An exception that nobody catches ends it here: above are the
+// parent's functions, which would go on twice.
 [[noreturn]] void work(int file, std::size_t first, std::size_t step, std::size_t count,
-                       const std::function<std::string(std::size_t)>& task) {
+                       const std::function<std::string(std::size_t)>& task) noexcept {
   using Control = oneapi::tbb::global_control;
   const Control one_thread(Control::max_allowed_parallelism, 1);  // the other processes have the other cores
   for (std::size_t number = first; number < count; number += step) {
@@ -96,7 +97,12 @@ class Child {
     int ends[2];
     if (::pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
     process_ = ::fork();
-    if (process_ < 0) throw std::system_error(errno, std::generic_category(), "fork");
+    if (process_ < 0) {
+      const int error = errno;
+      ::close(ends[0]);
+      ::close(ends[1]);
+      throw std::system_error(error, std::generic_category(), "fork");
+    }
     if (process_ == 0) {
       ::close(ends[0]);
       work(ends[1], first, step, count, task);

@@ -67,7 +67,7 @@ std::string fidelity_text(const FidelityGroup& group);
 // Tables, a plot and figures.
 void add_fidelity_report(Findings& findings, std::span<const FidelityGroup> groups);
 
-// The study: the frames of Table 1, of Table 2 and of the figures.
+// The study: the frames of Table 1, of Table 2, of the figures and of progressive rendering.
 void study_fidelity(Findings& findings, const Progress& progress);
 
 }  // namespace splatscope::studies

@@ -247,8 +247,8 @@ void add_fidelity_report(Findings& findings, std::span<const FidelityGroup> grou
   report.heading("Speed against accuracy");
   report.paragraph(fmt::format(
       "All frames of Table 1, of Table 2 (its stand-ins with the published number of points, at both "
-      "resolutions) and of the figures that draw other scenes, on both machines. Host seconds hold function "
-      "and timing, and are the least of {} runs "
+      "resolutions), of the figures that draw other scenes and of progressive rendering, on both machines. "
+      "Host seconds hold function and timing, and are the least of {} runs "
       "(the referee's: of one). Errors are against the referee; those of sampled are of all seeds from 0 to "
       "{}, of 0 alone where a frame is too small to be sampled. Memory is that of the whole process, the "
       "trace included.",

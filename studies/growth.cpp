@@ -68,7 +68,7 @@ constexpr Measure kMeasures[] = {
     {"sampled, MB", [](const GrowthRow& row) { return row.sampled.megabytes; }},
     {"cycle, MB", [](const GrowthRow& row) { return row.cycle.megabytes; }}};
 
-Plot::Series series_of(const std::vector<GrowthRow>& rows, const Measure& measure) {
+Plot::Series series_of(std::span<const GrowthRow> rows, const Measure& measure) {
   Plot::Series series{.name = std::string(measure.name), .x = {}, .y = {}};
   for (const GrowthRow& row : rows) {
     series.x.push_back(row.surfels);
@@ -106,9 +106,8 @@ std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& p
   return rows;
 }
 
-void study_growth(Findings& findings, const Progress& progress) {
+void add_growth_report(Findings& findings, std::span<const GrowthRow> rows) {
   using enum Report::Align;
-  const std::vector<GrowthRow> rows = growth_rows(kSides, progress);
   auto results = nlohmann::ordered_json::object();
   std::vector<Report::Column> columns{{"surfels", number}};
   std::vector<std::vector<std::string>> cells(rows.size() + 1);
@@ -123,18 +122,23 @@ void study_growth(Findings& findings, const Progress& progress) {
             .log_x = true,
             .log_y = true};
   for (const Measure& measure : kMeasures) {
-    columns.push_back({std::string(measure.name), number});
-    plot.series.push_back(series_of(rows, measure));
-    const Plot::Series& series = plot.series.back();
+    const Plot::Series series = series_of(rows, measure);
+    if (!std::ranges::all_of(series.y, [](double value) { return value > 0; })) continue;
+    columns.push_back({series.name, number});
+    plot.series.push_back(series);
     const double slope = log_log_slope(series.x, series.y);
     for (std::size_t i = 0; i < rows.size(); ++i) cells[i].push_back(fmt::format("{:.3f}", series.y[i]));
     cells.back().push_back(fmt::format("{:.2f}", slope));
-    results["measures"][std::string(measure.name)] = {{"values", series.y}, {"log_log_slope", slope}};
+    results["measures"][series.name] = {{"values", series.y}, {"log_log_slope", slope}};
   }
   findings.report().heading("Growth with the number of surfels");
   findings.table("Planes with four pixels a surfel, each time the least of some runs.", columns, cells);
   findings.plot("growth", plot);
   findings.result("growth", std::move(results));
+}
+
+void study_growth(Findings& findings, const Progress& progress) {
+  add_growth_report(findings, growth_rows(kSides, progress));
 }
 
 }  // namespace splatscope::studies

@@ -23,6 +23,10 @@ std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& p
 // line.
 double log_log_slope(const std::vector<double>& x, const std::vector<double>& y);
 
+// A table, a plot and figures. A measure that is not above 0 in every row, such as memory of which the system
+// does not tell, has no power law and is left out.
+void add_growth_report(Findings& findings, std::span<const GrowthRow> rows);
+
 // The study: from 10,000 to a million surfels.
 void study_growth(Findings& findings, const Progress& progress);
 

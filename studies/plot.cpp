@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 #include <stdexcept>
 
@@ -66,19 +67,36 @@ Plot::Series ellipse(const std::string& name, const glm::dmat2& axes) {
   return series;
 }
 
+// What gnuplot says besides, such as warnings of an axis without extent, is no part of the drawing; the
+// user's own settings (-d) are none of it either.
 std::string svg_of(const Plot& plot) {
-  const traces::OutputFile script(std::filesystem::temp_directory_path() / "splatscope.gnuplot");
+  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  const traces::OutputFile script(folder / "splatscope.gnuplot"),
+      errors(folder / "splatscope.gnuplot-errors");
   if (!(std::ofstream(script.temporary()) << script_of(plot)).flush())
     throw std::runtime_error(script.temporary().string() + ": writing failed (is the disk full?)");
-  std::FILE* pipe = ::popen(fmt::format("gnuplot {} 2>&1", quoted(script.temporary().string())).c_str(), "r");
+  std::FILE* pipe = ::popen(fmt::format("gnuplot -d {} 2>{}", quoted(script.temporary().string()),
+                                        quoted(errors.temporary().string()))
+                                .c_str(),
+                            "r");
   if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");
   std::string text;
   char part[4096];
   for (std::size_t n = 0; (n = std::fread(part, 1, sizeof part, pipe)) > 0;) text.append(part, n);
   if (::pclose(pipe) != 0) {
-    throw std::runtime_error(fmt::format("gnuplot failed ({}), expected the package gnuplot-nox", text));
+    std::ifstream said(errors.temporary());
+    const std::string why{std::istreambuf_iterator<char>(said), {}};
+    throw std::runtime_error(fmt::format("gnuplot failed ({}), expected the package gnuplot-nox", why));
   }
   return text;
+}
+
+void add_plot(Report& report, const Plot& plot) {
+  try {
+    report.drawing(plot.title, svg_of(plot));
+  } catch (const std::runtime_error& error) {  // no reason to lose what may have taken hours
+    report.paragraph(fmt::format("No curves: {}.", error.what()));
+  }
 }
 
 }  // namespace splatscope::studies

@@ -19,7 +19,7 @@ std::optional<sim::Cycle> cycle_of(std::string_view text, sim::Cycle absent) {
 
 }  // namespace
 
-CycleWindow window_of(const std::string& text, const char* option) {
+sim::LogWindow window_of(const std::string& text, const char* option) {
   if (text.empty()) return {};
   const std::string_view view = text;
   if (const std::size_t colon = view.find(':'); colon != view.npos) {
@@ -57,16 +57,10 @@ T& RunObservers::add(const std::string& path, Arguments&&... arguments) {
 
 RunObservers::RunObservers(const ObserveOptions& options, const Trace& trace)
     : timeline_window_(options.timeline_window), pipeline_window_(options.pipeline_window) {
-  if (!options.timeline.empty()) {
-    const CycleWindow window = options.timeline_window;
-    timeline_ = &add<sim::Timeline>(options.timeline, trace,
-                                    sim::Timeline::Window{.first = window.first, .last = window.last});
-  }
-  if (!options.pipeline.empty()) {
-    const CycleWindow window = options.pipeline_window;
-    pipeline_ = &add<sim::PipelineLog>(options.pipeline, trace,
-                                       sim::PipelineLog::Window{.first = window.first, .last = window.last});
-  }
+  if (!options.timeline.empty())
+    timeline_ = &add<sim::Timeline>(options.timeline, trace, options.timeline_window);
+  if (!options.pipeline.empty())
+    pipeline_ = &add<sim::PipelineLog>(options.pipeline, trace, options.pipeline_window);
   if (!options.counters.empty()) add<sim::TimeSeries>(options.counters, options.counters_every);
 }
 
@@ -80,7 +74,7 @@ std::vector<std::string> RunObservers::commit(sim::Cycle cycles) {
     file->file.commit();
     said.push_back(file->name);
   }
-  const auto say_where = [&](const auto* log, const CycleWindow& window, const char* what,
+  const auto say_where = [&](const auto* log, const sim::LogWindow& window, const char* what,
                              const char* option) {
     if (log && window.first >= cycles)
       said.push_back(

@@ -15,16 +15,13 @@ namespace splatscope::studies {
 
 // "1000:2000", "1000:", ":2000" or "": the first and the last core cycle. Throws UserError (file `option`)
 // for anything else.
-struct CycleWindow {
-  sim::Cycle first = 0, last = sim::kNever;
-};
-CycleWindow window_of(const std::string& text, const char* option);
+sim::LogWindow window_of(const std::string& text, const char* option);
 
 struct ObserveOptions {
   std::string timeline;                   // file for Perfetto; empty: none
-  CycleWindow timeline_window;            // what it shows
+  sim::LogWindow timeline_window;         // what it shows
   std::string pipeline;                   // file for Konata; empty: none
-  CycleWindow pipeline_window;            // the same of it
+  sim::LogWindow pipeline_window;         // the same of it
   std::string counters;                   // file for a table (CSV); empty: none
   std::uint64_t counters_every = 10'000;  // core cycles a row
 };
@@ -48,7 +45,7 @@ class RunObservers {
   template <class T, class... Arguments>
   T& add(const std::string& path, Arguments&&... arguments);
 
-  CycleWindow timeline_window_, pipeline_window_;
+  sim::LogWindow timeline_window_, pipeline_window_;
   std::vector<std::unique_ptr<File>> files_;
   std::vector<sim::Observer*> observers_;
   const sim::Timeline* timeline_ = nullptr;

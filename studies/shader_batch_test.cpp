@@ -77,6 +77,10 @@ TEST(ShaderBatch, ACaseThatIsWrongIsAnErrorOfLine0) {
   const std::string program = R"({"id": "a", "program": "vs_1_1\nmov oPos, v0", )";
   EXPECT_EQ(run(program + R"("inputs": {"v16": []}})"),
             R"({"id":"a","error":"0: inputs has \"v16\", expected v0 to v15"})");
+  for (const std::string name : {"v00", "v-0", "v1x", "v 1", "c1", "v", "1", ""})
+    EXPECT_EQ(
+        run(program + R"("inputs": {"v0": ["0", "0", "0", "0"], ")" + name + R"(": ["0", "0", "0", "0"]}})"),
+        R"({"id":"a","error":"0: inputs has \")" + name + R"(\", expected v0 to v15"})");
   EXPECT_EQ(run(program + R"("inputs": {"v0": ["x", "0", "0", "0"]}})"),
             R"({"id":"a","error":"0: v0 is \"x\", expected 32 bits in hex"})");
   EXPECT_EQ(run(program + R"("inputs": {"v0": [[[1]], "0", "0", "0"]}})"),

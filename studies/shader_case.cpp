@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "model/error.h"
+#include "model/isa/opcode.h"
 #include "model/isa/tokens.h"
 #include "model/isa/validate.h"
 
@@ -19,8 +20,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kConstants = 96;
-constexpr int kInputs = 16;
 constexpr int kDepth = 8;                 // of JSON; a case needs 2
 constexpr std::size_t kLongestText = 32;  // of what a message quotes
 
@@ -123,17 +122,18 @@ void ShaderCase::registers(std::string_view group, char letter, int count, Set s
   if (!case_[group].is_object()) fail(fmt::format("\"{}\" is no object", group));
   for (const auto& [name, value] : case_[group].items()) {
     int index = -1;
-    const char* end = name.data() + name.size();
-    const bool number = name.size() > 1 && std::from_chars(name.data() + 1, end, index).ptr == end;
-    if (!number || name[0] != letter || index < 0 || index >= count)
+    if (name.size() > 1) std::from_chars(name.data() + 1, name.data() + name.size(), index);
+    // Each register has one name: "v00" beside "v0" would be a key that stands twice.
+    if (index < 0 || index >= count || name != fmt::format("{}{}", letter, index))
       fail(fmt::format("{} has {}, expected {}0 to {}{}", group, quote_of(name), letter, letter, count - 1));
     set(static_cast<std::size_t>(index), vector_of<words>(name, value));
   }
 }
 
 std::vector<Vec4> ShaderCase::constants() const {
-  std::vector<Vec4> constants(kConstants);
-  registers("constants", 'c', kConstants, [&](std::size_t i, const Vec4& value) { constants[i] = value; });
+  std::vector<Vec4> constants(isa::kVertexConstants);
+  registers("constants", 'c', isa::kVertexConstants,
+            [&](std::size_t i, const Vec4& value) { constants[i] = value; });
   return constants;
 }
 
@@ -147,8 +147,8 @@ std::unique_ptr<vertex::InputBatch> ShaderCase::vertex_inputs() const {
   const auto set = [&](std::size_t i, const Vec4& value) {
     for (std::size_t c = 0; c < 4; ++c) std::fill_n(in->v[i][c], vertex::kBatch, value[c]);
   };
-  for (std::size_t i = 0; i < kInputs; ++i) set(i, {0, 0, 0, 1});
-  registers("inputs", 'v', kInputs, set);
+  for (std::size_t i = 0; i < isa::kVertexInputs; ++i) set(i, {0, 0, 0, 1});
+  registers("inputs", 'v', isa::kVertexInputs, set);
   return in;
 }
 

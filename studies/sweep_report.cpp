@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "traces/words.h"
 
@@ -67,11 +66,7 @@ Report report_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity) 
   using enum Report::Align;
   Report report("splatscope: sweep", fmt::format("{} on machines like {}, fidelity {}.", sweep.input.name,
                                                  machine.name, name(fidelity)));
-  try {
-    if (const auto plot = plot_of(sweep)) report.drawing(plot->title, svg_of(*plot));
-  } catch (const std::runtime_error& error) {  // no reason to lose what may have taken hours
-    report.paragraph(fmt::format("No curves: {}.", error.what()));
-  }
+  if (const auto plot = plot_of(sweep)) add_plot(report, *plot);
   std::vector<Report::Column> columns;
   for (const auto& [key, value] : sweep.points.front().settings) columns.push_back({key, number});
   columns.insert(columns.end(), {{"cycles", number}, {"frames a second", number}, {"bottleneck"}});

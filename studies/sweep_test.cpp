@@ -20,6 +20,7 @@
 #include "model/processes.h"
 #include "model/testing/scratch_folder.h"
 #include "studies/run_results.h"
+#include "traces/output_files.h"
 #include "traces/trace_file.h"
 
 namespace splatscope::studies {
@@ -380,6 +381,23 @@ TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {
             "a.toml:3: wrong: x");
   EXPECT_THROW(in_processes(4, 2, [](std::size_t i) -> std::string { return i == 1 ? ::_exit(3), "" : "x"; }),
                std::runtime_error);
+}
+
+// It ends the child, and never comes to the parent's functions in it.
+TEST(Processes, AnExceptionThatNobodyCatchesEndsTheProcess) {
+  const ScratchFolder folder;
+  const pid_t parent = ::getpid();
+  try {
+    in_processes(1, 1, [](std::size_t) -> std::string { throw 1; });
+    ADD_FAILURE();
+  } catch (const std::runtime_error&) {
+  } catch (int) {
+    if (::getpid() != parent) {
+      traces::write_file(folder / "escaped", std::string_view("x"));
+      ::_exit(0);
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "escaped"));
 }
 
 }  // namespace

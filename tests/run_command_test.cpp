@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -69,6 +70,20 @@ TEST(CommandLine, TheResultsSayWhatWasSet) {
   const auto swept = results_of({"sweep", "--out", "b", "--sweep", "vertex.units=1,2"});
   EXPECT_EQ(swept["set"], run["set"]);
   EXPECT_EQ(swept["points"][0]["set"], (nlohmann::json{{"vertex.units", "1"}}));
+}
+
+TEST(CommandLine, RunWritesItsResultsWithoutAPlotter) {
+  const ScratchFolder folder;
+  folder.file("small.toml", kSmallScene);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "", 1);
+  const Outcome outcome = run_program({"run", "small.toml", "--out", "out"}, folder.path());
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/results.json"));
+  const std::string report = text_of(folder.path() / "out/report.html");
+  EXPECT_NE(report.find("No curves: gnuplot failed"), std::string::npos);
+  EXPECT_NE(report.find("Configuration"), std::string::npos);
 }
 
 // Names of files are bytes, and JSON is UTF-8: what it cannot hold is replaced.

@@ -139,7 +139,7 @@ std::string describe(const SkipCounts& skipped);
 // The two, with ", 7 normals estimated, 7 radii estimated" where there are such.
 std::string describe(const SkipCounts& skipped, const EstimateCounts& estimated);
 
-// "from 1000 triangles, 3 left out (3 degenerate), 12 normals computed"; empty where there is no mesh.
+// "from 1000 triangles, 3 left out (3 without area), 12 normals computed"; empty where there is no mesh.
 std::string describe(const MeshCounts& mesh);
 
 // "no-ewa", "ewa-per-pixel", "ewa-per-surfel": as in scene files and results.

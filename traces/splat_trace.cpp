@@ -73,17 +73,6 @@ Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& f
   return buffer;
 }
 
-Buffer quad_indices(std::size_t quads) {
-  constexpr std::uint16_t order[kIndices] = {0, 1, 2, 0, 2, 3};
-  Buffer buffer;
-  buffer.bytes.resize(quads * kIndices * sizeof(std::uint16_t));
-  for (std::size_t i = 0; i < quads * kIndices; ++i) {
-    const auto index = static_cast<std::uint16_t>(i / kIndices * kCorners + order[i % kIndices]);
-    std::memcpy(buffer.bytes.data() + i * sizeof index, &index, sizeof index);
-  }
-  return buffer;
-}
-
 // Along camera z the depth image moves as if the eye stood z_t further back; the program's own offset is then
 // 0.
 std::vector<Vec4> constants_of(const kernels::SplatProgram& program, kernels::View view,
@@ -172,6 +161,17 @@ RecordedPass add_still_pass(const RecordedPass& splats, std::span<const SurfelBu
 }
 
 }  // namespace
+
+Buffer quad_indices(std::size_t quads) {
+  constexpr std::uint16_t order[kIndices] = {0, 1, 2, 0, 2, 3};
+  Buffer buffer;
+  buffer.bytes.resize(quads * kIndices * sizeof(std::uint16_t));
+  for (std::size_t i = 0; i < quads * kIndices; ++i) {
+    const auto index = static_cast<std::uint16_t>(i / kIndices * kCorners + order[i % kIndices]);
+    std::memcpy(buffer.bytes.data() + i * sizeof index, &index, sizeof index);
+  }
+  return buffer;
+}
 
 kernels::View view_of(const Camera& camera, const Frame& frame) {
   return kernels::look_at(camera.eye, camera.target, camera.up, camera.fov_y_degrees, frame.width,

@@ -61,6 +61,9 @@ struct Tangents {
 };
 Tangents tangents(const Surfel& surfel);
 
+// The 16-bit indices of so many quads, as two triangles each, whose four vertices follow each other.
+Buffer quad_indices(std::size_t quads);
+
 // Buffers, programs and draws of the two passes of Ren 2002, section 5: for each of `frames` clear,
 // visibility and splats of its ranges, in their order. The frame that refines the last one has vertices of
 // its own, as the weights lie in the vertices: those of ewa-per-pixel. Four vertices a surfel, six 16-bit

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "model/error.h"
+#include "model/isa/opcode.h"
 #include "model/isa/program.h"
 #include "model/pixel/pixel_program.h"
 #include "model/stop.h"
@@ -15,10 +16,8 @@ namespace {
 
 constexpr std::uint32_t kMaxFrameEdge = 4096;  // pixels
 constexpr std::uint32_t kMaxStride = 1024;     // bytes: 16 attributes of 16 bytes, and room
-constexpr std::size_t kMaxConstants = 96;      // vs_1_1
 constexpr std::uint32_t kMaxSurfaces = 4;      // off-screen
 constexpr std::size_t kMaxFrames = 1000;       // each is a picture of `run`
-constexpr std::uint8_t kInputs = 16;           // vs_1_1
 
 struct Loaded {
   isa::ShaderKind kind;
@@ -131,7 +130,7 @@ class Checker {
     check_programs(draw);
     if (draw.texture) item("texture", trace_.textures, *draw.texture);
     check_surfaces(draw);
-    in_range("number of constants", draw.constants.size(), 0, kMaxConstants);
+    in_range("number of constants", draw.constants.size(), 0, isa::kVertexConstants);
     const auto last = static_cast<unsigned>(BlendFactor::src_alpha_saturate);
     in_range("source blend factor", static_cast<unsigned>(draw.state.source_factor), 0, last);
     in_range("destination blend factor", static_cast<unsigned>(draw.state.destination_factor), 0, last);
@@ -153,10 +152,10 @@ class Checker {
 
   void check_attributes(const Draw& draw) const {
     in_range("vertex stride", draw.vertex_stride, 1, kMaxStride);
-    in_range("number of attributes", draw.attributes.size(), 1, kInputs);
+    in_range("number of attributes", draw.attributes.size(), 1, isa::kVertexInputs);
     std::uint32_t seen = 0;
     for (const VertexAttribute& attribute : draw.attributes) {
-      in_range("attribute's input register", attribute.input, 0, kInputs - 1);
+      in_range("attribute's input register", attribute.input, 0, isa::kVertexInputs - 1);
       if (seen & (1u << attribute.input))
         fail(fmt::format("input register v{} is given twice", attribute.input), "one attribute a register");
       seen |= 1u << attribute.input;

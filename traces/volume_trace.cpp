@@ -17,6 +17,7 @@
 #include "model/error.h"
 #include "model/stop.h"
 #include "traces/splat_trace.h"
+#include "traces/trace_file.h"
 #include "traces/volume_sheets.h"
 
 namespace splatscope::traces {
@@ -27,7 +28,6 @@ using glm::dvec2;
 using glm::dvec3;
 
 constexpr std::uint32_t kCorners = 4, kIndices = 6;  // of a quad
-constexpr int kMostTexels = 2048;                    // along an edge, on both cards
 constexpr std::int16_t kCornerSigns[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 
 class VertexWriter {
@@ -90,7 +90,7 @@ class Recorder {
     trace.textures = {kernels::alpha_texture(cutoff,
                                              settings_.texture_length > 0
                                                  ? settings_.texture_length
-                                                 : std::min(kernels::optimal_length(cutoff), kMostTexels),
+                                                 : std::min(kernels::optimal_length(cutoff), kMaxTextureEdge),
                                              kernels::CutoffShape::circle, settings_.texture_bits)};
     for (const SheetPlan& plan : plans()) {
       if (!plan.rectangle.empty()) add_sheet(plan);
@@ -332,10 +332,7 @@ class Recorder {
   }
 
   void finish_buffers() {
-    constexpr std::uint16_t order[kIndices] = {0, 1, 2, 0, 2, 3};
-    VertexWriter writer(result_.trace.buffers[kIndexBuffer].bytes);
-    for (std::size_t i = 0; i < std::max<std::size_t>(most_quads_, 1) * kIndices; ++i)
-      writer.put(static_cast<std::uint16_t>(i / kIndices * kCorners + order[i % kIndices]));
+    result_.trace.buffers[kIndexBuffer] = quad_indices(std::max<std::size_t>(most_quads_, 1));
     for (const std::uint32_t buffer : {kSharedVertices, kOwnVertices, kSheetVertices})
       result_.vertex_bytes += result_.trace.buffers[buffer].bytes.size();
     // What the application writes anew each frame, as its voxels are shaded, lies in AGP memory.

@@ -30,18 +30,12 @@ struct Boxes {
       right[FastSurfels::kPadding], bottom[FastSurfels::kPadding];
 
   HWY_INLINE void set_columns(const FastView& view, V low, V high) {
-    span(low, high, view.width, left, right);
+    store_span(low, high, view.width, left, right);
   }
-  HWY_INLINE void set_rows(const FastView& view, V low, V high) { span(low, high, view.height, top, bottom); }
+  HWY_INLINE void set_rows(const FastView& view, V low, V high) {
+    store_span(low, high, view.height, top, bottom);
+  }
   FastBox operator[](std::size_t lane) const { return {left[lane], top[lane], right[lane], bottom[lane]}; }
-
- private:
-  static HWY_INLINE void span(V low, V high, float size, std::int32_t* first, std::int32_t* last) {
-    const V zero = hn::Zero(F{}), most = set(size), half = set(0.5f);
-    hn::Store(hn::ConvertTo(I{}, hn::Min(hn::Max(hn::Ceil(hn::Sub(low, half)), zero), most)), I{}, first);
-    const V beyond = hn::Floor(hn::Add(high, half));
-    hn::Store(hn::ConvertTo(I{}, hn::Min(hn::Max(beyond, zero), most)), I{}, last);
-  }
 };
 
 // What becomes of one register of surfels; a lane's values are stored only where it is kept.

@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstdint>
+
 #include "kernels/reference/fast_splat.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,6 +34,12 @@ HWY_INLINE V dot(const V3& a, const V3& b) {
 }
 HWY_INLINE V square(V a) {
   return hn::Mul(a, a);
+}
+// Pixels of 0 to `size` whose centres lie between low and high: from `first` to before `last`.
+HWY_INLINE void store_span(V low, V high, float size, std::int32_t* first, std::int32_t* last) {
+  const V zero = hn::Zero(F{}), most = set(size), half = set(0.5f);
+  hn::Store(hn::ConvertTo(I{}, hn::Min(hn::Max(hn::Ceil(hn::Sub(low, half)), zero), most)), I{}, first);
+  hn::Store(hn::ConvertTo(I{}, hn::Min(hn::Max(hn::Floor(hn::Add(high, half)), zero), most)), I{}, last);
 }
 
 }  // namespace splatscope::kernels::HWY_NAMESPACE

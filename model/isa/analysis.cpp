@@ -11,8 +11,8 @@
 namespace splatscope::isa {
 namespace {
 
-constexpr std::size_t kAddress = 12, kTextures = 13, kOutputs = 19;  // first register of each kind
-constexpr std::size_t kTemporaries = 12;
+constexpr std::size_t kAddress = kVertexTemporaries, kTextures = 13,
+                      kOutputs = 19;  // first register of each kind
 
 void include(RegisterSet& set, RegisterFile file, std::size_t index, unsigned components) {
   for (std::size_t component = 0; component < 4; ++component)
@@ -26,7 +26,7 @@ bool is_tracked(RegisterFile file) {
 // Alpha of r0..r5 does not survive a phase marker.
 RegisterSet lost_at_phase() {
   RegisterSet set;
-  for (std::size_t index = 0; index < kTemporaries; ++index)
+  for (std::size_t index = 0; index < kVertexTemporaries; ++index)
     include(set, RegisterFile::temporary, index, 0x8);
   return set;
 }
@@ -42,7 +42,7 @@ RegisterSet live_at_the_end(const Program& program) {
 
 int live_temporaries(const RegisterSet& live) {
   int count = 0;
-  for (std::size_t index = 0; index < kTemporaries; ++index) {
+  for (std::size_t index = 0; index < kVertexTemporaries; ++index) {
     RegisterSet all;
     include(all, RegisterFile::temporary, index, 0xf);
     count += (live & all).any() ? 1 : 0;

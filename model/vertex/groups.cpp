@@ -96,7 +96,7 @@ class Planner {
     from.each |= missing;
   }
 
-  std::array<Held, kTemporaries> temporaries_;
+  std::array<Held, isa::kVertexTemporaries> temporaries_;
   std::array<Held, 16> inputs_;
   std::array<Held, kOutputs> outputs_;
   std::vector<PlannedStep> planned_;

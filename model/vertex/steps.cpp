@@ -221,8 +221,9 @@ void run_address_step(const Step& step, Arithmetic arithmetic, Workspace& worksp
   }
   for (int lane = 0; lane < count; ++lane) {
     const std::int32_t index = workspace.address[lane] + step.constant_offset;
-    const Vec4 value =
-        index >= 0 && index < kConstants ? workspace.constants[static_cast<std::size_t>(index)] : Vec4{};
+    const Vec4 value = index >= 0 && index < isa::kVertexConstants
+                           ? workspace.constants[static_cast<std::size_t>(index)]
+                           : Vec4{};
     for (std::size_t component = 0; component < 4; ++component)
       workspace.scratch[component][lane] = value[component];
   }

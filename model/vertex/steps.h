@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/isa/opcode.h"
 #include "model/isa/program.h"
 #include "model/vertex/vertex_program.h"
 
@@ -62,15 +63,13 @@ struct Step {
 
 std::vector<Step> make_steps(const isa::Program& program);
 
-inline constexpr int kTemporaries = 12;
-inline constexpr int kConstants = 96;
 inline constexpr int kBroadcast = 16;  // floats of the widest SIMD register
 
 // Which registers may hold an INF, a NaN or a denormal in some lane, as far as the nv20 code has to know.
 struct SpecialRegisters {
-  std::array<bool, kTemporaries> temporaries{};
-  std::array<bool, 16> inputs{};
-  std::array<bool, kConstants> constants{};
+  std::array<bool, isa::kVertexTemporaries> temporaries{};
+  std::array<bool, isa::kVertexInputs> inputs{};
+  std::array<bool, isa::kVertexConstants> constants{};
   bool scratch = true;
   bool outputs = false;  // written, never read
 };
@@ -78,11 +77,11 @@ struct SpecialRegisters {
 // The registers of one batch while it runs.
 struct Workspace {
   SpecialRegisters special;
-  alignas(64) float temporaries[kTemporaries][4][kBatch];
+  alignas(64) float temporaries[isa::kVertexTemporaries][4][kBatch];
   alignas(64) float scratch[4][kBatch];
-  alignas(64) float broadcast[kConstants][4][kBroadcast];  // constants, once a SIMD lane
+  alignas(64) float broadcast[isa::kVertexConstants][4][kBroadcast];  // constants, once a SIMD lane
   alignas(64) std::int32_t address[kBatch] = {};
-  std::array<Vec4, kConstants> constants{};  // those that a draw does not give are 0
+  std::array<Vec4, isa::kVertexConstants> constants{};  // those that a draw does not give are 0
 };
 
 // A step with its registers found: what the SIMD code runs.

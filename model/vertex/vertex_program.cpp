@@ -38,7 +38,7 @@ struct VertexProgram::Decoded {
       temporaries_read_first;                    // before all of what is read is written: they start at 0
   std::array<std::uint8_t, kOutputs> written{};  // components of each output
 
-  void use(const Step& step, std::array<std::uint8_t, kTemporaries>& temporaries_written);
+  void use(const Step& step, std::array<std::uint8_t, isa::kVertexTemporaries>& temporaries_written);
 };
 
 namespace {
@@ -54,7 +54,7 @@ void add_once(std::vector<std::uint16_t>& numbers, std::uint16_t number) {
 }  // namespace
 
 void VertexProgram::Decoded::use(const Step& step,
-                                 std::array<std::uint8_t, kTemporaries>& temporaries_written) {
+                                 std::array<std::uint8_t, isa::kVertexTemporaries>& temporaries_written) {
   for (std::size_t i = 0; i < step.source_count; ++i) {
     const StepSource& source = step.sources[i];
     if (source.place == Place::constant) add_once(constants_read, source.index);
@@ -162,7 +162,7 @@ VertexProgram::Execution::Execution(const Decoded& program, std::span<const Vec4
 }
 
 void VertexProgram::Execution::set_constants(std::span<const Vec4> constants, Workspace& workspace) const {
-  const auto given = std::min<std::size_t>(constants.size(), kConstants);
+  const auto given = std::min<std::size_t>(constants.size(), isa::kVertexConstants);
   std::copy_n(constants.begin(), given, workspace.constants.begin());
   for (const auto& [index, value] : program_.defined) workspace.constants[index] = value;
   for (const std::uint16_t index : program_.constants_read) {
@@ -270,7 +270,7 @@ VertexProgram::VertexProgram(const isa::Program& program, Arithmetic arithmetic,
   decoded_->instructions = program.instructions.size();
   for (const isa::Definition& definition : program.definitions)
     decoded_->defined.emplace_back(definition.index, definition.values);
-  std::array<std::uint8_t, kTemporaries> temporaries_written{};
+  std::array<std::uint8_t, isa::kVertexTemporaries> temporaries_written{};
   for (const Step& step : decoded_->steps) decoded_->use(step, temporaries_written);
   decoded_->addresses = std::ranges::any_of(decoded_->steps, is_address_step);
 }
@@ -286,7 +286,7 @@ std::vector<VertexState> VertexProgram::trace(std::span<const Vec4> constants, c
   const auto state = [&] {
     VertexState result;
     for (std::size_t c = 0; c < 4; ++c) {
-      for (std::size_t r = 0; r < kTemporaries; ++r)
+      for (std::size_t r = 0; r < isa::kVertexTemporaries; ++r)
         result.temporaries[r][c] = workspace.temporaries[r][c][0];
       for (std::size_t o = 0; o < kOutputs; ++o) result.outputs[o][c] = out->o[o][c][0];
     }

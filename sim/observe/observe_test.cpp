@@ -21,7 +21,7 @@ struct Observed {
   Cycle cut_at = 0;
 };
 
-Observed observe(unsigned seed, const Timeline::Window& window, Cycle interval = 100) {
+Observed observe(unsigned seed, const LogWindow& window, Cycle interval = 100) {
   RandomMaker maker(seed);
   const RandomTrace made = maker.trace();
   const Machine machine = maker.machine();
@@ -138,7 +138,7 @@ TEST(Timeline, EndsWellWhereItIsCutShort) {
   EXPECT_EQ(kNever, observe(7, {}).cut_at);
 }
 
-std::string timeline_of(const RandomTrace& made, const Timeline::Window& window) {
+std::string timeline_of(const RandomTrace& made, const LogWindow& window) {
   std::ostringstream text;
   Timeline timeline(text, made.trace, window);
   Observer* const observers[] = {&timeline};

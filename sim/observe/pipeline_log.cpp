@@ -14,7 +14,7 @@ constexpr std::uint64_t kBytesBesideLabel = 144;
 
 }  // namespace
 
-PipelineLog::PipelineLog(std::ostream& out, const Trace& trace, const Window& window)
+PipelineLog::PipelineLog(std::ostream& out, const Trace& trace, const LogWindow& window)
     : out_(out), trace_(trace), window_(window) {}
 
 void PipelineLog::begin(const SimulatedMachine& machine) {

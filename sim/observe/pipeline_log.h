@@ -10,6 +10,7 @@
 #include "model/command/commands.h"
 #include "model/isa/program.h"
 #include "sim/kernel/observer.h"
+#include "sim/observe/log_window.h"
 #include "sim/simulate.h"
 #include "sim/units/vertex/vertex_unit.h"
 
@@ -20,13 +21,9 @@ namespace splatscope::sim {
 // its issue until its results can be read), on the thread of its unit. Written as a stream.
 class PipelineLog final : public Observer, public IssueWatcher {
  public:
-  // Of the vertices that are taken and the slots that issue in these core cycles, up to `most_bytes`.
-  struct Window {
-    Cycle first = 0, last = kNever;
-    std::uint64_t most_bytes = 48'000'000;
-  };
-  // `trace` is what will be simulated. `out` and `trace` outlive the log.
-  PipelineLog(std::ostream& out, const Trace& trace, const Window& window);
+  // Of the vertices that are taken and the slots that issue in the window. `trace` is what will be simulated.
+  // `out` and `trace` outlive the log.
+  PipelineLog(std::ostream& out, const Trace& trace, const LogWindow& window);
 
   void begin(const SimulatedMachine& machine) override;
   void booked(const Unit&, std::uint32_t, Cycle, Cycle) override {}
@@ -69,7 +66,7 @@ class PipelineLog final : public Observer, public IssueWatcher {
 
   std::ostream& out_;
   const Trace& trace_;
-  Window window_;
+  LogWindow window_;
   const SimulatedMachine* machine_ = nullptr;
   std::vector<VertexUnit*> units_;
   std::map<std::uint32_t, isa::Program> programs_;  // of the trace

@@ -85,7 +85,7 @@ std::vector<Row> rows_of(const std::string& text) {
   return rows;
 }
 
-Log log_of(unsigned seed, const PipelineLog::Window& window, Scheduler scheduler = Scheduler::skip_ahead) {
+Log log_of(unsigned seed, const LogWindow& window, Scheduler scheduler = Scheduler::skip_ahead) {
   RandomMaker maker(seed);
   const RandomTrace made = maker.trace();
   const Machine machine = maker.machine();

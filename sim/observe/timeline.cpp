@@ -84,7 +84,7 @@ std::uint64_t data_clocks(const Unit& memory, Cycle now) {
 
 }  // namespace
 
-Timeline::Timeline(std::ostream& out, const Trace& trace, const Window& window)
+Timeline::Timeline(std::ostream& out, const Trace& trace, const LogWindow& window)
     : out_(out), trace_(trace), window_(window) {}
 
 void Timeline::begin(const SimulatedMachine& machine) {

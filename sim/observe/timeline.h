@@ -7,6 +7,7 @@
 
 #include "model/command/commands.h"
 #include "sim/kernel/observer.h"
+#include "sim/observe/log_window.h"
 #include "sim/simulate.h"
 
 namespace splatscope::sim {
@@ -14,15 +15,11 @@ namespace splatscope::sim {
 // A run as a timeline in Chrome's trace event format, which Perfetto opens: a track for the commands and one
 // for each unit (busy, starved, blocked by whom; idle is left empty), counters for the items in each channel
 // and for the use of each memory channel's data bus. One microsecond there is one core cycle. Written as a
-// stream; beside the names of its tracks no longer than `most_bytes`.
+// stream; beside the names of its tracks no longer than `LogWindow::most_bytes`.
 class Timeline final : public Observer {
  public:
-  struct Window {
-    Cycle first = 0, last = kNever;  // core cycles shown
-    std::uint64_t most_bytes = 48'000'000;
-  };
   // `trace` is what will be simulated. `out` and `trace` outlive the timeline.
-  Timeline(std::ostream& out, const Trace& trace, const Window& window);
+  Timeline(std::ostream& out, const Trace& trace, const LogWindow& window);
 
   void begin(const SimulatedMachine& machine) override;
   void booked(const Unit& unit, std::uint32_t book, Cycle from, Cycle until) override;
@@ -51,7 +48,7 @@ class Timeline final : public Observer {
 
   std::ostream& out_;
   const Trace& trace_;
-  Window window_;
+  LogWindow window_;
   const SimulatedMachine* machine_ = nullptr;
   std::vector<std::string> slice_heads_;  // by unit
   std::vector<std::string> slice_tails_;  // by book

@@ -71,7 +71,7 @@ void add_roofline(Report& report, const Machine& machine, const sim::Result& tim
        {"used", number},
        {"frames/s", number}},
       rows);
-  if (const auto plot = roofline_plot(list, timing.seconds)) report.drawing(plot->title, svg_of(*plot));
+  if (const auto plot = roofline_plot(list, timing.seconds)) add_plot(report, *plot);
 }
 
 void add_counts(Report& report, const Json& results) {

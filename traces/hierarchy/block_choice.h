@@ -21,7 +21,8 @@ struct BlockCounts {
   std::size_t facing_away = 0;
 };
 
-// "857 blocks drawn; culled: 0 surfels outside the frustum, 25319 facing away"; with levels, what each has.
+// "68215 surfels in 857 blocks drawn; culled: 0 surfels outside the frustum, 25319 facing away"; with levels,
+// what each has.
 std::string describe(const BlockCounts& counts);
 
 // Neighbouring surfels of a level.

@@ -104,13 +104,6 @@ struct Batch {
   HWY_ALIGN float keep[kLanes];
 };
 
-// Pixels whose centres lie between low and high.
-HWY_INLINE void store_span(V low, V high, float size, std::int32_t* first, std::int32_t* last) {
-  const V zero = hn::Zero(F{}), most = set(size), half = set(0.5f);
-  hn::Store(hn::ConvertTo(I{}, hn::Min(hn::Max(hn::Ceil(hn::Sub(low, half)), zero), most)), I{}, first);
-  hn::Store(hn::ConvertTo(I{}, hn::Min(hn::Max(hn::Floor(hn::Add(high, half)), zero), most)), I{}, last);
-}
-
 // Phong's matt and shining part.
 struct Light {
   V matt, shine;

@@ -14,7 +14,7 @@ bool AgpBus::serve(Cycle now, const Client& client) {
   const MemoryRequest request = client.requests->pop(now);
   const auto rate = static_cast<std::uint32_t>(spec_.bytes_per_clock);
   const Cycle length = (request.bytes + rate - 1) / rate;
-  data_free_ = std::max(now + latency_, data_free_) + std::max<Cycle>(length, 1);
+  data_free_ = std::max(now + latency_, data_free_) + length;
   on_the_way_.push_back(data_free_);
   ++reads_;
   data_clocks_.book(now, data_free_ - length, data_free_);

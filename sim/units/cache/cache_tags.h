@@ -59,8 +59,11 @@ class CacheTags {
 
   std::uint32_t ways_;
   std::uint32_t set_mask_;
-  std::uint32_t clock_ = 0;  // of uses
-  std::vector<Way> tags_;    // a set's ways side by side
+  // Of uses. After 2^32 of them, 16 s of the machine at one in each clock of 275 MHz, it begins again: what
+  // lies there from before is then the last to go until it is used again. 64 bits would make a way a third
+  // larger.
+  std::uint32_t clock_ = 0;
+  std::vector<Way> tags_;  // a set's ways side by side
 };
 
 }  // namespace splatscope::sim
