@@ -83,15 +83,14 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
 
 void print(const studies::Comparison& c) {
   std::cout << "  against the reference: " << studies::describe_psnr(c);
-  if (c.pixels_off_edges > 0) {
-    std::cout << fmt::format(", {:.1f} dB over the {} of them off edges, at worst {:.0f}/255, ",
-                             c.psnr_off_edges, c.pixels_off_edges, c.worst)
-              << fmt::format("{} of {} pixels inside the silhouette are holes", c.holes, c.inside_pixels);
-    if (c.rounded_to_black > 0)
-      std::cout << fmt::format(", {} more are covered and rounded to black", c.rounded_to_black);
-  } else if (c.surface_pixels > 0) {
-    std::cout << fmt::format(", at worst {:.0f}/255", c.worst);
-  }
+  if (c.pixels_off_edges > 0)
+    std::cout << fmt::format(", {:.1f} dB over the {} of them off edges", c.psnr_off_edges,
+                             c.pixels_off_edges);
+  if (c.surface_pixels > 0) std::cout << fmt::format(", at worst {:.0f}/255", c.worst);
+  if (c.inside_pixels > 0)
+    std::cout << fmt::format(", {} of {} pixels inside the silhouette are holes", c.holes, c.inside_pixels);
+  if (c.rounded_to_black > 0)
+    std::cout << fmt::format(", {} more are covered and rounded to black", c.rounded_to_black);
   std::cout << '\n';
 }
 

@@ -228,7 +228,7 @@ std::vector<Guard> guards() {
        {{"add r8.w, r8.x, r8.y            ; S", ";"},
         {"mad r8.w, r8.w, r8.w, c7.x", ";"},
         {"mad r7.x, r8.w, c7.y, r7.x", ";"}},
-       "D = 0: edge-on, or of no size"},
+       "D = 0: the eye in it, exactly edge-on, or of no size"},
       {"|p| never 0", "paper", {{"max r9.x, r9.x, c7.w", ";"}}, "t = 0: facing the eye"},
       {"second pivot of W", "facing", {{"max r7.y, r7.y, c6.x", ";"}}, "huge and edge-on"},
       {"second pivot of W", "normal", {{"max r7.y, r7.y, c6.x", ";"}}, "huge and edge-on"},

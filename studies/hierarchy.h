@@ -37,7 +37,8 @@ struct LevelRow {
   std::size_t surfels = 0;    // drawn where the level is chosen
   std::vector<std::size_t> surfels_by_level;
   double fps_finest = 0, fps = 0;
-  double psnr = 0;  // dB, of the chosen levels against the finest, normalised per pixel, where either drew
+  // dB, normalised per pixel, against the reference of all surfels.
+  double psnr_finest = 0, psnr = 0;
 };
 
 // A scene from `times` as far away.

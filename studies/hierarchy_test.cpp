@@ -26,6 +26,22 @@ TEST(Hierarchy, CullsPartOfWhatFacesAwayAndGainsByIt) {
   EXPECT_GT(row.fps, row.fps_all);
 }
 
+// Where many surfels share a pixel, their small weights and dark colours round away: fewer and larger splats
+// come nearer to all of them.
+TEST(Hierarchy, ACoarseLevelIsNearerToTheReferenceFromAfar) {
+  const traces::Scene scene = traces::parse_scene(
+      "surfels = { generator = \"salamander\", count = 4000 }\nframe = { width = 80, height = 80 }\n"
+      "hierarchy.block_surfels = 16\n",
+      "salamander.toml");
+  const Machine machine = machine::load("geforce4-ti4400");
+  const LevelRow near = level_row(scene, 1, machine), far = level_row(scene, 8, machine);
+  EXPECT_EQ(near.surfels, near.surfels_by_level.front());
+  EXPECT_EQ(near.psnr_finest, near.psnr);
+  EXPECT_LT(far.surfels, near.surfels / 8);
+  EXPECT_GT(far.psnr, far.psnr_finest + 3);
+  EXPECT_GT(near.psnr, far.psnr + 3);
+}
+
 TEST(Hierarchy, RefinesFrameByFrame) {
   const auto rows = progressive_rows(small_sphere(), machine::load("geforce4-ti4400"));
   ASSERT_GT(rows.size(), 3u);

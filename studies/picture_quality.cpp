@@ -161,9 +161,7 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
   row.exact = compare(frame_of(draw_exactly(scene, exact)), reference);
   const kernels::ScreenSpacePicture same_weights = draw_exactly(scene, captured.weights);
   row.captured = compare(frame_of(same_weights), reference);
-  Machine exact_frame = machine;
-  exact_frame.numbers.frame = FrameFormat::float32;
-  const Frame unrounded = draw_frame(scene, captured, exact_frame);
+  const Frame unrounded = draw_frame(scene, captured, with_frame(machine, FrameFormat::float32));
   row.float_frame = compare(unrounded, reference);
   const Frame frame = draw_frame(scene, captured, machine);
   const auto draw_unrounded = [&] { return Frame(unrounded); };

@@ -31,7 +31,7 @@ struct QualityRow {
   Comparison per_pixel;        // the machine's, normalised per pixel
   Comparison exact;            // weights of gamma.h's sums, drawn in double precision
   Comparison captured;         // weights captured on the machine, drawn in double precision
-  Comparison float_frame;      // the same weights, drawn by the machine with a float frame buffer
+  Comparison float_frame;      // the same weights, drawn by the machine in floats: with_frame
   Comparison per_surfel;       // and with its own of 8 bits: the machine's picture
   Comparison same_weights;     // the machine's, against Eq. 5 in double precision with the captured weights
   double capture_seconds = 0;  // of the host

@@ -39,8 +39,8 @@ TEST(PictureQuality, FiltersThatEndLateAreSmoother) {
             small_sphere("").per_surfel.psnr_off_edges);
 }
 
-// Of a surface so dark, and of splats so many and each of so little weight, that they round to nothing.
-TEST(PictureQuality, NoDarkPixelIsAHole) {
+// A dark surface of many splats.
+traces::Scene dark_surface() {
   std::ostringstream out;
   out << "ply\nformat ascii 1.0\nelement vertex 1600\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "radius"})
@@ -49,16 +49,31 @@ TEST(PictureQuality, NoDarkPixelIsAHole) {
   out << "end_header\n";
   for (int i = 0; i < 1600; ++i) out << i % 40 << ' ' << i / 40 << " 0 0 0 1 4 20 20 20\n";
   const ScratchFolder folder;
-  const traces::Scene scene =
-      traces::parse_scene("[surfels]\nfile = '" + folder.file("dark.ply", out.str()).string() +
-                              "'\n[frame]\nwidth = 96\nheight = 96\n",
-                          "dark.toml");
+  return traces::parse_scene("[surfels]\nfile = '" + folder.file("dark.ply", out.str()).string() +
+                                 "'\n[frame]\nwidth = 96\nheight = 96\n",
+                             "dark.toml");
+}
+
+// So dark, and of so many splats and each of so little weight, that they round to nothing.
+TEST(PictureQuality, NoDarkPixelIsAHole) {
+  const traces::Scene scene = dark_surface();
   const Machine machine = machine::load("geforce4-ti4400");
   const Trace trace = traces::record(scene, machine.numbers).trace;
   const FrameRun run = run_frame(trace, machine, Fidelity::functional);
   const Comparison c = compare(run.rendered.frame, trace, machine, screen_space_reference(scene));
   EXPECT_EQ(c.holes, 0u);
   EXPECT_GT(c.rounded_to_black, 0u);
+}
+
+// Weights that the vertices' 8-bit colours do not hold: the splats are there all the same.
+TEST(PictureQuality, NoPixelOfFaintSplatsIsAHole) {
+  const traces::Scene scene = dark_surface();
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Trace trace = traces::record(scene, traces::uniform_weights(scene.surfels.size(), 0.001)).trace;
+  const Comparison c = compare(draw_frame(trace, machine), trace, machine, screen_space_reference(scene));
+  EXPECT_EQ(c.holes, 0u);
+  EXPECT_EQ(c.rounded_to_black, c.inside_pixels);
+  EXPECT_GT(c.inside_pixels, 0u);
 }
 
 TEST(PictureQuality, RealModelsAreThoseThatAreThere) {

@@ -103,6 +103,10 @@ std::vector<char> off_edges(const kernels::ScreenSpacePicture& reference) {
   return off;
 }
 
+bool is_black(const Vec4& color) {
+  return color[0] == 0 && color[1] == 0 && color[2] == 0;
+}
+
 }  // namespace
 
 std::vector<kernels::Surfel> reference_surfels(const traces::Scene& scene) {
@@ -180,7 +184,7 @@ bool is_inside(std::span<const double> depth, int width, int height, int x, int 
 Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference,
                    const std::function<Frame()>& unrounded) {
   Comparison out = surface_difference(frame, reference, off_edges(reference));
-  std::vector<std::size_t> black;
+  std::vector<std::size_t> empty;  // black and without weight
   for (int y = 0; y < reference.height; ++y) {
     for (int x = 0; x < reference.width; ++x) {
       if (!is_inside(reference.depth, reference.width, reference.height, x, y)) continue;
@@ -188,15 +192,21 @@ Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& refere
       const std::size_t pixel = pixel_index(reference, x, y);
       const glm::dvec3& expected = reference.normalized[pixel];
       const bool shows = std::max({expected.r, expected.g, expected.b}) > kHalfStep;
-      if (shows && frame.color(pixel) == Vec4{}) black.push_back(pixel);
+      if (!shows || !is_black(frame.color(pixel))) continue;
+      if (frame.color(pixel)[3] == 0) {
+        empty.push_back(pixel);
+      } else {
+        ++out.rounded_to_black;
+      }
     }
   }
-  if (unrounded && !black.empty()) {
+  out.holes = empty.size();
+  if (unrounded && !empty.empty()) {
     const Frame exact = unrounded();
-    out.rounded_to_black = static_cast<std::size_t>(
-        std::ranges::count_if(black, [&](std::size_t pixel) { return exact.color(pixel) != Vec4{}; }));
+    out.holes = static_cast<std::size_t>(
+        std::ranges::count_if(empty, [&](std::size_t pixel) { return exact.color(pixel) == Vec4{}; }));
   }
-  out.holes = black.size() - out.rounded_to_black;
+  out.rounded_to_black += empty.size() - out.holes;
   return out;
 }
 

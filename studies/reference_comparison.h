@@ -59,9 +59,9 @@ struct Comparison {
   std::size_t pixels_off_edges = 0;
   double psnr_off_edges = 0;  // dB
   // Pixels inside the silhouette (their rays and those of the eight pixels about them meet an opaque quad of
-  // the reference), and of these the ones that the frame left black and without weight, where the reference
-  // is not as good as black: holes, which no splat covers, and dark pixels whose splats all rounded to
-  // nothing.
+  // the reference), and of these the ones that the frame left black where the reference is not as good as
+  // black: holes, which no splat covers, and pixels that splats cover whose colours all rounded to nothing,
+  // whether their weights did or not.
   std::size_t inside_pixels = 0;
   std::size_t holes = 0;
   std::size_t rounded_to_black = 0;
@@ -70,8 +70,8 @@ struct Comparison {
 // Not where one of them lies beyond the border.
 bool is_inside(std::span<const double> depth, int width, int height, int x, int y);
 
-// `unrounded` gives the frame as a frame buffer of floats holds it, and is asked only where there may be
-// holes. Without it every pixel left black is a hole.
+// `unrounded` gives the frame as a machine that computes colours in floats leaves it, and is asked only where
+// there may be holes. Without it every pixel left black and without weight is a hole.
 Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference,
                    const std::function<Frame()>& unrounded = {});
 

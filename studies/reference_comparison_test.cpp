@@ -54,6 +54,7 @@ TEST(ReferenceComparison, counts_holes_and_differences_on_the_surface_alone) {
   frame.colors32[6 * 3 + 0] = {1, 1, 1, 1};     // beyond the surface
   const Comparison c = compare(frame, grey_square());
   EXPECT_EQ(c.holes, 1u);
+  EXPECT_EQ(c.rounded_to_black, 1u);
   EXPECT_EQ(c.over_8, 3u);
   EXPECT_NEAR(c.worst, 127.5, 1e-9);
   EXPECT_NEAR(c.psnr, -10 * std::log10(3 * 0.25 / 25), 1e-9);

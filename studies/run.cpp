@@ -226,9 +226,8 @@ Frame draw_frame(const traces::Scene& scene, const Machine& machine, const Progr
 
 Comparison compare(const Frame& frame, const Trace& trace, const Machine& machine,
                    const kernels::ScreenSpacePicture& reference) {
-  Machine exact = machine;
-  exact.numbers.frame = FrameFormat::float32;
-  return compare(frame, reference, [&] { return draw_frame(trace, exact); });
+  return compare(frame, reference,
+                 [&] { return draw_frame(trace, with_frame(machine, FrameFormat::float32)); });
 }
 
 Image picture_of(const Frame& frame) {

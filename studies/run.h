@@ -118,8 +118,8 @@ Frame draw_frame(const Trace& trace, const Machine& machine);
 Frame draw_frame(const traces::Scene& scene, const traces::CapturedWeights& weights, const Machine& machine);
 Frame draw_frame(const traces::Scene& scene, const Machine& machine, const Progress& progress = {});
 
-// Compares the frame that `trace` left on `machine` with the reference, and draws it once more with a frame
-// buffer of floats where pixels that rounded to black have to be told from holes.
+// Compares the frame that `trace` left on `machine` with the reference, and draws it once more by with_frame
+// in floats where pixels that rounded to black have to be told from holes.
 Comparison compare(const Frame& frame, const Trace& trace, const Machine& machine,
                    const kernels::ScreenSpacePicture& reference);
 

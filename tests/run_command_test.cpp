@@ -287,6 +287,19 @@ TEST(CommandLine, AReferenceThatCoversNothingIsSaidToBeNone) {
   EXPECT_EQ(report.find("nan dB"), std::string::npos);
 }
 
+// In a frame so small that every pixel is near an edge there are pixels inside the silhouette all the same.
+TEST(CommandLine, HolesAreSaidWhereNoPixelIsOffEdges) {
+  const ScratchFolder folder;
+  folder.file("tiny.toml",
+              "[surfels]\ncolumns = 16\nrows = 16\n[camera]\neye = [0, 6, 14]\ntarget = [0, 0, 0]\n"
+              "[frame]\nwidth = 8\nheight = 8\n");
+  const Outcome outcome = run_program(
+      {"run", "tiny.toml", "--reference", "--fidelity", "functional", "--out", "o"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(outcome.out.find("off edges"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("pixels inside the silhouette are holes"), std::string::npos) << outcome.out;
+}
+
 // A library of pictures that is not there is told from one that does not load.
 TEST(CommandLine, PicturesWithoutTheirLibraryAreAnError) {
   const ScratchFolder folder;

@@ -32,8 +32,8 @@ void add_picture(Report& report, const FrameRun& run) {
   const Comparison& c = run.reference->comparison;
   std::string agreement = describe_psnr(c);
   if (c.surface_pixels > 0) agreement += fmt::format(", at worst {:.0f}/255", c.worst);
-  if (c.pixels_off_edges > 0)
-    agreement += fmt::format(", {:.1f} dB off edges, {} holes", c.psnr_off_edges, c.holes);
+  if (c.pixels_off_edges > 0) agreement += fmt::format(", {:.1f} dB off edges", c.psnr_off_edges);
+  if (c.inside_pixels > 0) agreement += fmt::format(", {} holes", c.holes);
   report.comparisons({{{"frame", agreement, picture},
                        picture_of(run.reference->picture),
                        difference_picture(run.rendered.frame, run.reference->picture)}});

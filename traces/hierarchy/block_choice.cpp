@@ -102,7 +102,8 @@ double projected_spacing(const Block& block, double spacing, const kernels::View
   for (std::size_t i = 0; i < window.size(); ++i) {
     const glm::dvec3 corner = view.camera_space(block.corner(i));
     nearest = std::min(nearest, corner.z);
-    if (!(nearest >= view.near_plane)) return std::numeric_limits<double>::infinity();
+    // Not at the near plane: clip planes fitted to the surfels cut the boxes of the blocks in front.
+    if (!(nearest > 0)) return std::numeric_limits<double>::infinity();
     window[i] = view.window(corner);
   }
   const double diagonal = glm::length(block.high - block.low);

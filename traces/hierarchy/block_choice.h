@@ -43,7 +43,8 @@ Splatting level_splatting(const Splatting& splatting, std::size_t level);
 
 // Distance in pixels between neighbouring surfels of a level where it is largest: by warping the corners of
 // the block's box to the screen and taking the longest of its four diagonals (Pfister et al. 2000), in units
-// of the level's spacing. Infinite where the box reaches before the near plane.
+// of the level's spacing. Infinite where the box reaches to the eye's plane or behind it; the near plane may
+// cut it.
 double projected_spacing(const Block& block, double spacing, const kernels::View& view);
 
 // Walks the tree from its root, culls, and stops where `hierarchy` finds a level fine enough. One frame;

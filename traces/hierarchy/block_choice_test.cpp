@@ -9,6 +9,7 @@
 
 #include "model/error.h"
 #include "model/render.h"
+#include "traces/framing.h"
 #include "traces/recorder.h"
 #include "traces/scene.h"
 
@@ -62,14 +63,17 @@ TEST(BlockChoice, SpacingIsWarpedToTheScreen) {
   const double slanted = projected_spacing(block, 0.1, view);
   EXPECT_LT(slanted, 0.1 * 50 / 10);
   EXPECT_GT(slanted, 0.1 * 50 / 12 * std::sqrt(2.0 / 3.0));
-  block.low.z = 0.5;
+  block.low.z = 0.5;  // before the near plane
+  EXPECT_LT(projected_spacing(block, 0.1, view), 0.1 * 50 / 0.5);
+  EXPECT_GT(projected_spacing(block, 0.1, view), slanted);
+  block.low.z = -0.5;  // behind the eye
   EXPECT_EQ(std::numeric_limits<double>::infinity(), projected_spacing(block, 0.1, view));
   block.low = block.high = {0, 0, 20};
   EXPECT_DOUBLE_EQ(0.1 * 50 / 20, projected_spacing(block, 0.1, view));
 }
 
 TEST(BlockChoice, EachSurfelIsShownOnceAtSomeLevel) {
-  Scene scene = small_model("culling = \"off\"\nlevel = \"auto\"\nsurfels_per_pixel = 0.02\n");
+  Scene scene = small_model("culling = \"off\"\nlevel = \"auto\"\nsurfels_per_pixel = 0.005\n");
   scene.camera.target += glm::dvec3(0.3, 0, 0);  // near and far blocks
   scene.camera.eye = scene.camera.target + 0.3 * (scene.camera.eye - scene.camera.target);
   scene.camera.near *= 0.01;
@@ -87,7 +91,8 @@ TEST(BlockChoice, WhatIsFarIsDrawnCoarsely) {
   std::size_t last = all + 1;
   for (const double distance : {0.2, 4.0, 16.0, 64.0}) {
     scene.camera.eye = scene.camera.target + distance * ray;
-    scene.camera.near = 1e-3;
+    frame_camera(scene.surfels, scene.frame, {.eye = true, .target = true, .up = true, .fov_y_degrees = true},
+                 scene.camera);  // clip planes close to the surfels: they cut boxes
     const Choice choice = choose(scene);
     const std::size_t drawn = choice.frames.front().counts.surfels;
     EXPECT_LT(drawn, last) << distance;
