@@ -27,7 +27,8 @@ TEST(Figure10, GammaKeepsTheSumsFromClamping) {
   // 1 surfel in 100 may have a larger sum (traces/gamma.h), and between the surfels it is larger still.
   EXPECT_LT(rows[1].saturated, 0.03);
   EXPECT_LT(rows[1].clamped, 0.03);
-  EXPECT_NEAR(rows[0].psnr, rows[1].psnr, 0.5);
+  // How the captured weights round by gamma scatters the picture by up to a decibel.
+  EXPECT_NEAR(rows[0].psnr, rows[1].psnr, 1);
   EXPECT_GT(rows[2].saturated, 0.5);
   EXPECT_GT(rows[2].clamped, 0.5);
   EXPECT_LT(rows[2].psnr, rows[1].psnr - 6) << "half as near";
