@@ -390,7 +390,8 @@ TEST(Processes, AnExceptionThatNobodyCatchesEndsTheProcess) {
   try {
     in_processes(1, 1, [](std::size_t) -> std::string { throw 1; });
     ADD_FAILURE();
-  } catch (const std::runtime_error&) {
+  } catch (const std::runtime_error& error) {
+    EXPECT_STRNE(error.what(), "");
   } catch (int) {
     if (::getpid() != parent) {
       traces::write_file(folder / "escaped", std::string_view("x"));
