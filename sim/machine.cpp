@@ -300,7 +300,8 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraw
                                                 Scheduler scheduler, UnitChoice choice) {
   expect_countable_time(trace, spec);
   auto machine = std::make_unique<SimulatedMachine>(spec, scheduler);
-  const Needs needs = choice == UnitChoice::all ? Needs{true, true, true, true} : needs_of(trace);
+  const Needs used = needs_of(trace);
+  const Needs needs = choice == UnitChoice::all ? Needs{true, true, true, true} : used;
   machine->vertex_programs = std::move(draws.vertex_programs);
   machine->jobs = std::move(draws.jobs);
   machine->built = needs;
@@ -310,7 +311,7 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraw
   connect_host(build, units);
   Items& set_up = connect_geometry(build, units, trace, spec);
   connect_quads(build, units, set_up, spec, layout);
-  set_commands(*machine, units, spec, layout, needs_of(trace));
+  set_commands(*machine, units, spec, layout, used);
   return machine;
 }
 

@@ -124,8 +124,7 @@ const std::array kKeys = {
         "where the vertex buffers lie; auto: in video memory until `video_megabytes` are full",
         ChoiceValue{
             [](S& s, int i) { s.splatting.vertex_memory = VertexMemory(i); }, {"auto", "video", "agp"}, 0}},
-    // Of a card with 64 MB, the Radeon 8500, less the frame and the desktop; of a Ti 4400, which has 128,
-    // 120.
+    // Of a card with 64 MB, the Radeon 8500, less the frame and the desktop. A Ti 4400 has 64 more.
     SceneKey{"splatting", "video_megabytes", "MiB", "video memory that is free for vertices and indices",
              RealValue{[](S& s) -> double& { return s.splatting.video_megabytes; }, 56, 0, 4096}},
     SceneKey{"splatting", "faces", "",

@@ -257,6 +257,8 @@ TEST(Gamma, CountsAllSplatsThatReachASurfel) {
   const std::vector<double> sums = filter_sums(plane.surfels, plane.splatting, plane.surfels);
   constexpr double kAtTheCutoff = 0.003;  // four, which rounding leaves out or not
   EXPECT_NEAR(sums[32 * 64 + 32], 1.960, kAtTheCutoff);
+  EXPECT_NEAR(plane.splatting.gamma, 1 / 1.960, kAtTheCutoff)
+      << "the sums are nearly the same between surfels";
 }
 
 // Sums between surfels are up to 1.4 times those at them, by the cutoff and its shape: no more of the surface

@@ -11,8 +11,8 @@
 namespace splatscope::isa {
 namespace {
 
-constexpr std::size_t kAddress = kVertexTemporaries, kTextures = 13,
-                      kOutputs = 19;  // first register of each kind
+// First register of each kind.
+constexpr std::size_t kAddress = kVertexTemporaries, kTextures = 13, kOutputs = 19;
 
 void include(RegisterSet& set, RegisterFile file, std::size_t index, unsigned components) {
   for (std::size_t component = 0; component < 4; ++component)

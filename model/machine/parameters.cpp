@@ -177,8 +177,7 @@ std::vector<Parameter> memory_parameters() {
        "consecutive addresses on one channel (a power of two)"},
       {"memory.banks", "", integer<&M::memory, &M::Memory::banks>(1, 64),
        "banks a channel (a power of two); the frame with its surfaces, the depths, each texture and buffer "
-       "begin "
-       "in the first"},
+       "begin in the first"},
       {"memory.row_bytes", "bytes", integer<&M::memory, &M::Memory::row_bytes>(256, 65536),
        "row of a bank (a power of two)"},
       {"memory.precharge_clocks", "clocks", integer<&M::memory, &M::Memory::precharge_clocks>(0, 256),

@@ -97,7 +97,7 @@ class Planner {
   }
 
   std::array<Held, isa::kVertexTemporaries> temporaries_;
-  std::array<Held, 16> inputs_;
+  std::array<Held, isa::kVertexInputs> inputs_;
   std::array<Held, kOutputs> outputs_;
   std::vector<PlannedStep> planned_;
 };
