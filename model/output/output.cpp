@@ -49,6 +49,14 @@ double offset_at(std::uint32_t pixel, const DrawState& state, const Frame& frame
   return rounding_offset(frame.formats.frame_rounding, pixel % frame.width, pixel / frame.width);
 }
 
+// What a blend unit takes of a colour: a fixed-point frame buffer clamps it before its factors.
+Vec4 source_of(const std::array<const float*, 4>& colors, std::size_t i, FrameFormat format) {
+  Vec4 color{colors[0][i], colors[1][i], colors[2][i], colors[3][i]};
+  if (format != FrameFormat::float32 && format != FrameFormat::half)
+    std::ranges::transform(color, color.begin(), saturate);
+  return color;
+}
+
 // By packs().
 void pack_and_write(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
                     const DrawState& state, Frame& frame) {
@@ -78,7 +86,7 @@ void write_colors(const std::array<const float*, 4>& colors, std::span<const std
   if (formats.frame != FrameFormat::unorm8) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       Vec4& stored = frame.colors32[pixels[i]];
-      stored = blended<float>({colors[0][i], colors[1][i], colors[2][i], colors[3][i]}, stored, state);
+      stored = blended(source_of(colors, i, formats.frame), stored, state);
       if (formats.frame == FrameFormat::float32) continue;
       const double offset = offset_at(pixels[i], state, frame);
       for (float& channel : stored) channel = stored_value(formats.frame, channel, offset);
@@ -88,7 +96,7 @@ void write_colors(const std::array<const float*, 4>& colors, std::span<const std
   const bool nearest = formats.frame_rounding == FrameRounding::nearest;
   const BlendState blend{state.source_factor, state.destination_factor, BlendEquation::add, {}};
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const Vec4 color{colors[0][i], colors[1][i], colors[2][i], colors[3][i]};
+    const Vec4 color = source_of(colors, i, formats.frame);
     Color8& stored = frame.colors8[pixels[i]];
     if (nearest) {
       Color8 source;

@@ -30,8 +30,9 @@ inline constexpr std::size_t kLanes = 16;
 void receive_colors(float* values, std::size_t count, ColorFormat format);
 
 // Writes or blends the colours (r, g, b, a: an array each, with room for a whole number of kLanes) of
-// fragments into their pixels, one after the other. In an 8-bit frame a colour is quantised first and the
-// blend rounds once (number/blend.h).
+// fragments into their pixels, one after the other. A fixed-point frame clamps a colour before its factors
+// (Direct3D's rule), one of 8 bits that rounds to nearest quantises it, and the blend rounds once
+// (number/blend.h).
 void write_colors(const std::array<const float*, 4>& colors, std::span<const std::uint32_t> pixels,
                   const DrawState& state, Frame& frame);
 

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "model/testing/random_seed.h"
 #include "model/testing/simd_targets.h"
 
 namespace splatscope::output {
@@ -63,9 +64,7 @@ TEST(Output, BlendsAdditively) {
 
 // Many fragments at once, some in the same pixel, are blended as the rule says, one after the other.
 TEST(Output, EveryBlendFollowsTheRule) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   constexpr std::size_t kCount = 80, kPixels = 7;
   const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
   const auto last = static_cast<unsigned>(BlendFactor::src_alpha_saturate);
@@ -145,6 +144,33 @@ TEST(Output, SaturatesInEightBits) {
   Frame frame(1, 1, formats(FrameFormat::unorm8));
   for (int i = 0; i < 3; ++i) write_one({0.4f, 0, 0, 0.4f}, 0, state, frame);
   EXPECT_EQ((Color8{255, 0, 0, 255}), frame.colors8[0]);
+}
+
+// -0.5 over 0.5, and 4 times 0.5 of the destination: a colour counts as 0 to 1, but in formats that go
+// beyond.
+TEST(Output, FixedPointFramesClampAColorBeforeItsFactors) {
+  DrawState adds, scales;
+  adds.blend = scales.blend = true;
+  adds.source_factor = adds.destination_factor = BlendFactor::one;
+  scales.source_factor = BlendFactor::dst_color;
+  scales.destination_factor = BlendFactor::zero;
+  for (const FrameFormat format : {FrameFormat::unorm8, FrameFormat::unorm10, FrameFormat::unorm16,
+                                   FrameFormat::half, FrameFormat::float32}) {
+    const bool clamps = format != FrameFormat::half && format != FrameFormat::float32;
+    for (const FrameRounding rounding :
+         {FrameRounding::nearest, FrameRounding::truncate, FrameRounding::dither}) {
+      NumberFormats numbers = formats(format);
+      numbers.frame_rounding = rounding;
+      const auto over_half = [&](float color, const DrawState& state) {
+        Frame frame(1, 1, numbers);
+        clear({{0.5f, 0.5f, 0.5f, 0.5f}, 1}, frame);
+        write_one({color, 0, 0, 0}, 0, state, frame);
+        return frame.color(0)[0];
+      };
+      EXPECT_NEAR(over_half(-0.5f, adds), clamps ? 0.5 : 0, 1.0 / 255);
+      EXPECT_NEAR(over_half(4, scales), clamps ? 0.5 : 2, 1.0 / 255);
+    }
+  }
 }
 
 // 16 splats of 0.7/255 each on a tile of 4x4 pixels: what each frame format makes of their sum.
