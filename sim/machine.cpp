@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "model/error.h"
 #include "model/number/frame_value.h"
@@ -23,10 +22,6 @@
 
 namespace splatscope::sim {
 namespace {
-
-Femtoseconds period_of(double megahertz) {
-  return static_cast<Femtoseconds>(std::llround(1e9 / megahertz));
-}
 
 // Creates units and what connects them. Units come before their channels: a channel asks for their clock
 // domains.

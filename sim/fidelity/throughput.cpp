@@ -7,6 +7,7 @@
 #include "model/error.h"
 #include "sim/draw_jobs.h"
 #include "sim/fidelity/stretches.h"
+#include "sim/units/host/host.h"
 
 namespace splatscope::sim {
 
@@ -106,13 +107,9 @@ class ThroughputEstimate::State {
 
   void add_normalization() {
     if (what_if_.divided_pixels_per_clock > 0) return add_division();
-    const Machine::Host& host = machine_.host;
-    const int bytes = static_cast<int>(layout_.color.bytes_per_pixel);
-    const double read = whole_clocks(bytes, host.uncached_read_bytes) * host.uncached_read_nanoseconds;
-    const double write =
-        whole_clocks(bytes, host.write_bytes_per_clock) * 1000 / machine_.clock.bus_megahertz;
-    const double clocks =
-        core_clocks((read + host.division_nanoseconds + write) * trace_.width * trace_.height);
+    const Femtoseconds pixel = Host::pixel_time(machine_.host, period_of(machine_.clock.bus_megahertz),
+                                                static_cast<int>(layout_.color.bytes_per_pixel));
+    const double clocks = core_clocks(1e-6 * static_cast<double>(pixel) * trace_.width * trace_.height);
     busy_[kHost] += clocks;
     cycles_ += clocks;
   }

@@ -17,6 +17,9 @@ inline constexpr Femtoseconds kMostTime = 18'000'000'000'000'000'000u;
 inline Femtoseconds femtoseconds_of(double nanoseconds) {
   return static_cast<Femtoseconds>(std::llround(nanoseconds * 1e6));
 }
+inline Femtoseconds period_of(double megahertz) {
+  return static_cast<Femtoseconds>(std::llround(1e9 / megahertz));
+}
 // Whole cycles of a clock that `time` takes.
 inline Cycle cycles_of(Femtoseconds time, Femtoseconds period) {
   return (time + period - 1) / period;
