@@ -30,6 +30,7 @@ class PixelHistory {
         texel_program_(add_program("ps_1_1\ntex t0\nmov r0, t0\n")),
         machine_(trace_, formats),
         wide_(trace_, with_float_frame(formats)),
+        inputs_(trace_, without_rounding(formats)),
         held_(std::size_t{1} + trace.surfaces) {}
 
   void add(PixelStep step, Command command) {
@@ -53,9 +54,10 @@ class PixelHistory {
     step.writes_color = draw.state.color_write;
     if (step.writes_color) {
       catch_up();
-      step.source = probe(triangle, draw.pixel_program);
-      step.diffuse = probe(triangle, diffuse_program_);
-      if (draw.texture || draw.source) step.texel = probe(triangle, texel_program_);
+      step.source = probe(wide_, triangle, draw.pixel_program);
+      step.diffuse = probe(inputs_, without_source(triangle), diffuse_program_);
+      if (draw.texture) step.texel = probe(inputs_, triangle, texel_program_);
+      if (draw.source) step.texel = probe(wide_, triangle, texel_program_);
     }
     add(step, triangle);
   }
@@ -77,6 +79,16 @@ class PixelHistory {
   static NumberFormats with_float_frame(NumberFormats formats) {
     formats.frame = FrameFormat::float32;
     return formats;
+  }
+
+  static NumberFormats without_rounding(NumberFormats formats) {
+    formats.combiner = CombinerFormat::unbounded;
+    return with_float_frame(formats);
+  }
+
+  static Draw without_source(Draw draw) {
+    draw.source.reset();
+    return draw;
   }
 
   std::uint32_t add_program(const char* text) {
@@ -113,14 +125,14 @@ class PixelHistory {
 
   // What `program` gives for the pixel, whatever is in the frame. Surfaces of binary32 hold what they would
   // in double, nearly.
-  Vec4 probe(Draw triangle, std::optional<std::uint32_t> program) {
+  Vec4 probe(Replay& replay, Draw triangle, std::optional<std::uint32_t> program) const {
     triangle.pixel_program = program;
     triangle.target = scratch_;
     triangle.state.depth_test = false;
     triangle.state.depth_write = false;
     triangle.state.blend = false;
-    wide_.run({triangle});
-    return wide_.target(scratch_).color(pixel_);
+    replay.run({triangle});
+    return replay.target(scratch_).color(pixel_);
   }
 
   Trace trace_;
@@ -128,6 +140,7 @@ class PixelHistory {
   std::uint32_t scratch_;  // a surface that the trace does not know
   std::uint32_t diffuse_program_, texel_program_;
   Replay machine_, wide_;         // in the machine's formats, and with frames of binary32
+  Replay inputs_;                 // draws probes of what the pixel unit reads, which it would round
   std::vector<Command> waiting_;  // that neither has drawn yet
   std::vector<Held> held_;        // of the frame and of each surface
 };
@@ -177,7 +190,8 @@ std::string surfaces_text(const Draw& draw) {
 
 // A texture has alpha alone.
 std::string texel_text(const Draw& draw, const Vec4& texel) {
-  return draw.source ? "texel " + text_of(texel) : fmt::format("texel alpha {:.4f}", texel[3]);
+  if (draw.source) return "  texel " + text_of(texel);
+  return draw.texture ? fmt::format("  texel alpha {:.4f}", texel[3]) : "";
 }
 
 std::string double_text(const PixelStep::Color& color) {
@@ -254,7 +268,7 @@ std::string describe(const Trace& trace, const NumberFormats& formats, const std
                          step.passed ? "passed" : "failed");
       if (!step.passed) continue;
       if (step.writes_color) {
-        out += fmt::format("    diffuse {}  {}  source {}\n", text_of(step.diffuse),
+        out += fmt::format("    diffuse {}{}  source {}\n", text_of(step.diffuse),
                            texel_text(*draw, step.texel), text_of(step.source));
       }
     }

@@ -28,7 +28,7 @@ struct PixelStep {
   Vec4 diffuse{};  // as the pixel unit sees it
   // Of the draw's texture, or of the surface that it samples: this pixel of it, as it would be in double.
   Vec4 texel{};
-  Vec4 source{};  // out of the pixel program
+  Vec4 source{};  // out of the pixel program, made of these
   // Before and after the step: what the target holds in the machine's format, and what it would hold if
   // blending were exact (in double, and never clamped), there and in the surface that the draw samples.
   Vec4 before{}, after{};
