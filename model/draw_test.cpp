@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/testing/draws.h"
+#include "model/testing/random_seed.h"
 
 namespace splatscope {
 namespace {
@@ -112,9 +113,7 @@ void expect_same(const Seen& alone, const Seen& together, bool recorded) {
 
 // Draws that follow one another are in flight together; behind a Present each one is alone.
 TEST(DrawPipeline, DrawsInFlightTogetherDrawWhatEachDrawsAlone) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   for (int round = 0; round < 10; ++round) {
     Trace together = without_draws(random), alone = together;
     for (int i = 0; i < 40; ++i) {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "model/testing/draws.h"
+#include "model/testing/random_seed.h"
 #include "model/testing/simd_targets.h"
 
 namespace splatscope {
@@ -85,9 +86,7 @@ TEST(Render, CullModeDropsTheWindingItNames) {
 
 // Every triangle has one winding or none: with one of the modes it is there, with the other it is not.
 TEST(Render, TheTwoCullModesShareTheTrianglesBetweenThem) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::uniform_real_distribution<float> anywhere(-2, 2), w(-0.5f, 1.5f);
   std::array<float, 12 * 500> corners;
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = i % 4 == 3 ? w(random) : anywhere(random);
@@ -133,9 +132,7 @@ void expect_fifo(std::span<const std::uint16_t> indices, std::mt19937& random) {
 }
 
 TEST(Render, ShadesWhatMissesTheVertexCache) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::array<std::uint16_t, 3 * 2000> indices;  // near one another, moving on; many of them quads
   for (std::size_t i = 0; i < indices.size(); ++i)
     indices[i] = static_cast<std::uint16_t>(i * 2970 / indices.size() + random() % 20);
@@ -147,9 +144,7 @@ TEST(Render, ShadesWhatMissesTheVertexCache) {
 
 // Nothing but quads, which mostly follow one another: the model takes many of them at once.
 TEST(Render, ShadesWhatMissesTheVertexCacheInRunsOfQuads) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::vector<std::uint16_t> indices;
   for (std::uint32_t first = 0, quad = 0; quad < 3000; ++quad) {
     for (const std::uint16_t corner : kQuad) indices.push_back(static_cast<std::uint16_t>(first + corner));

@@ -5,6 +5,7 @@
 
 #include "model/error.h"
 #include "model/render.h"
+#include "model/testing/random_seed.h"
 #include "program.h"
 #include "sim/simulate.h"
 #include "traces/output_files.h"
@@ -36,9 +37,7 @@ std::string mutant_of(const std::string& whole, std::mt19937& random) {
 }
 
 void expect_mutants_harmless(std::string_view algorithm) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(fmt::format("seed {}", seed));
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   const ScratchFolder folder;
   const auto path = folder.path() / "mutant.trace";
   traces::write_trace(small_trace(algorithm), path);

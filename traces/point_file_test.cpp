@@ -9,6 +9,7 @@
 #include <random>
 
 #include "model/error.h"
+#include "model/testing/random_seed.h"
 #include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"
 
@@ -203,9 +204,7 @@ TEST_F(PointFileTest, AbsurdCountsAreRefused) {
 }
 
 TEST_F(PointFileTest, MutationsDoNoHarm) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(fmt::format("seed {}", seed));
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   const std::string files[] = {binary_file(true), std::string(kAscii)};
   for (int i = 0; i < 2000; ++i) {
     std::string mutant = files[i % 2];

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "model/error.h"
+#include "model/testing/random_seed.h"
 #include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"
 #include "traces/trace_generated.h"
@@ -189,9 +190,7 @@ TEST_F(TraceFile, AnyTruncationIsRefused) {
 TEST_F(TraceFile, MutationsAreRefusedOrHarmless) {
   write_trace(small_trace(), path_);
   const std::vector<std::byte> whole = bytes_of(path_);
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(fmt::format("seed {}", seed));
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   int refused = 0;
   for (int i = 0; i < 3000; ++i) {
     std::vector<std::byte> mutant = whole;

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 #include "kernels/object_space_ewa/quad_runner.h"
 #include "kernels/short_ewa/programs.h"
 #include "model/error.h"
+#include "model/testing/random_seed.h"
 
 namespace splatscope::kernels {
 namespace {
@@ -18,7 +18,6 @@ constexpr double kDepthOffset = 0.05;
 
 // Surfels of every kind that some instruction is there for.
 std::vector<Surfel> mixed_surfels(const View& view, std::uint32_t seed) {
-  std::printf("seed %u\n", seed);
   std::mt19937 generator(seed);
   std::vector<Surfel> surfels = random_surfels(view, SurfelRanges{}, 500, generator);
   const glm::dmat4 to_object = glm::inverse(view.object_to_camera);
@@ -43,7 +42,7 @@ std::vector<Surfel> mixed_surfels(const View& view, std::uint32_t seed) {
 // The distance is that of the normal as it stands in the vertex, rounded to float: not of the exact one.
 TEST(Programs, the_plane_in_a_vertex_belongs_to_the_normal_beside_it) {
   const View view = test_view();
-  for (const Surfel& surfel : mixed_surfels(view, std::random_device{}())) {
+  for (const Surfel& surfel : mixed_surfels(view, random_seed())) {
     const std::span<const VertexField> fields = ewa_program("facing").fields;
     std::vector<std::byte> vertex(vertex_bytes(fields));
     write_vertex(fields, {surfel, {0, 0}, 1}, vertex.data());

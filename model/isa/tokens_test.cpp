@@ -10,6 +10,7 @@
 #include "model/error.h"
 #include "model/isa/validate.h"
 #include "model/testing/error_of.h"
+#include "model/testing/random_seed.h"
 
 namespace splatscope::isa {
 namespace {
@@ -88,9 +89,7 @@ TEST(Tokens, HostileStreamsAreErrors) {
 // Bits of valid streams flipped, cut and repeated: an error or a program, never a crash; and what is read can
 // be written.
 TEST(Tokens, MutatedStreamsAreErrorsOrPrograms) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   const std::vector<json> cases = cases_with_tokens();
   int accepted = 0;
   for (int trial = 0; trial < 20000; ++trial) {

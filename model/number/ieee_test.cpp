@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <random>
 
+#include "model/testing/random_seed.h"
+
 namespace splatscope::ieee {
 namespace {
 
@@ -33,9 +35,7 @@ TEST(Ieee, TheFractionOfANanIsThatNan) {
 }
 
 TEST(Ieee, ReciprocalSqrtIsCorrectlyRounded) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   for (int i = 0; i < 100000; ++i) {
     const float value = from(random() & 0x7f7fffffu);
     if (value == 0) continue;

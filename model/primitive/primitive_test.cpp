@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "model/testing/random_seed.h"
 #include "model/testing/simd_targets.h"
 
 namespace splatscope::primitive {
@@ -108,9 +109,7 @@ TEST(Primitive, KeepsAreaWhenClippedByTheGuardBand) {
 // A cut point lies on its plane but for rounding, which is of the size of the corners and is divided by its
 // w.
 TEST(Primitive, StaysWithinTheGuardBandWhateverTheCorners) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::uniform_real_distribution<float> mantissa(-1, 1);
   std::uniform_int_distribution<int> exponent(-126, 127);
   const auto number = [&] { return std::ldexp(mantissa(random), exponent(random)); };
@@ -152,9 +151,7 @@ TEST(Primitive, SurvivesExtremeCoordinates) {
 // Projection for many vertices tells the triangles that nothing cuts, and has assemble's coordinates for
 // them.
 TEST(Primitive, ProjectsManyVerticesAsOneTriangle) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::uniform_real_distribution<float> near_by(-2, 2);
   constexpr std::size_t kCount = 3 * 200;
   const float extremes[] = {0,

@@ -16,6 +16,7 @@
 #include <tuple>
 
 #include "model/output/output.h"
+#include "model/testing/random_seed.h"
 #include "model/testing/simd_targets.h"
 
 namespace splatscope::raster {
@@ -112,9 +113,7 @@ TEST(Raster, TruncatesToTheSubpixelGrid) {
 
 // Triangles of a fan around an inner point meet without gap and without overlap, on every grid.
 TEST(Raster, SharedEdgesAreCoveredOnce) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::uniform_real_distribution<double> inner(8, 24);
   for (int trial = 0; trial < 300; ++trial) {
     const int bits = trial % 9;
@@ -142,9 +141,7 @@ TEST(Raster, StaysInsideTheViewport) {
 
 // Coverage equals the sign test in exact arithmetic at every pixel centre.
 TEST(Raster, AgreesWithTheEdgeTestAtEveryCentre) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::uniform_real_distribution<double> anywhere(-8, 40);
   for (int trial = 0; trial < 200; ++trial) {
     const auto t = triangle(anywhere(random), anywhere(random), anywhere(random), anywhere(random),
@@ -205,9 +202,7 @@ bool same(const Plane& a, const Plane& b) {
 
 // Every SIMD target gives the setups, the coverage and the depths of the first one, which has no SIMD.
 TEST(Raster, EverySimdTargetGivesTheSameBits) {
-  const unsigned seed = std::random_device{}();
-  SCOPED_TRACE(::testing::Message() << "seed " << seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   std::uniform_real_distribution<double> size(-12, 12), z(-0.1, 1.1), w(0.01, 1), anywhere(-1, 1);
   std::vector<WindowTriangle> triangles;
   for (int i = 0; i < 400; ++i) {

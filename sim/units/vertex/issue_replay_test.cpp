@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <random>
+
+#include "model/testing/random_seed.h"
 
 namespace splatscope::sim {
 namespace {
@@ -51,9 +52,7 @@ TEST(IssueReplay, a_steady_stream_goes_round_a_few_states) {
 // Vertices come at random; the logic goes cycle by cycle, the replay from event to event, with a table that
 // is always full and with one that never is.
 TEST(IssueReplay, does_what_the_logic_does) {
-  const std::uint32_t seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   for (const std::size_t most_states : {2u, 16u, 100'000u}) {
     const auto slots = chain(1 + random() % 40);
     const Machine::Vertex spec = three_threads();

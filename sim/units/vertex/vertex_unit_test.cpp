@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <random>
+
+#include "model/testing/random_seed.h"
 
 namespace splatscope::sim {
 namespace {
@@ -234,9 +235,7 @@ Case random_case(std::mt19937& random) {
 }
 
 TEST(VertexUnit, referee_and_skip_ahead_agree) {
-  const std::uint32_t seed = std::random_device{}();
-  std::printf("seed %u\n", seed);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed());
   for (int i = 0; i < 150; ++i) {
     SCOPED_TRACE("case " + std::to_string(i));
     const Case test = random_case(random);
