@@ -25,6 +25,12 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
+std::string quoted_for_shell(const std::string& word) {
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
+  return result + "'";
+}
+
 std::string script_of(const Plot& plot) {
   std::string script =
       "set terminal svg size 720,440 font 'sans-serif,13' noenhanced background rgb 'white'\n"
@@ -75,8 +81,8 @@ std::string svg_of(const Plot& plot) {
       errors(folder / "splatscope.gnuplot-errors");
   if (!(std::ofstream(script.temporary()) << script_of(plot)).flush())
     throw std::runtime_error(script.temporary().string() + ": writing failed (is the disk full?)");
-  std::FILE* pipe = ::popen(fmt::format("gnuplot -d {} 2>{}", quoted(script.temporary().string()),
-                                        quoted(errors.temporary().string()))
+  std::FILE* pipe = ::popen(fmt::format("gnuplot -d {} 2>{}", quoted_for_shell(script.temporary().string()),
+                                        quoted_for_shell(errors.temporary().string()))
                                 .c_str(),
                             "r");
   if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");
@@ -91,11 +97,14 @@ std::string svg_of(const Plot& plot) {
   return text;
 }
 
-void add_plot(Report& report, const Plot& plot) {
+std::string add_plot(Report& report, const Plot& plot) {
   try {
-    report.drawing(plot.title, svg_of(plot));
+    std::string svg = svg_of(plot);
+    report.drawing(plot.title, svg);
+    return svg;
   } catch (const std::runtime_error& error) {  // no reason to lose what may have taken hours
     report.paragraph(fmt::format("No curves: {}.", error.what()));
+    return "";
   }
 }
 

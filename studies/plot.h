@@ -29,7 +29,8 @@ Plot::Series ellipse(const std::string& name, const glm::dmat2& axes);
 // The plot as the text of an SVG file. Throws std::runtime_error where gnuplot fails or is missing.
 std::string svg_of(const Plot& plot);
 
-// The plot in a page, or why there is none: where gnuplot fails, what was measured is not to be lost.
-void add_plot(Report& report, const Plot& plot);
+// The plot in a page, or why there is none: where gnuplot fails, what was measured is not to be lost. The
+// text of the SVG, or "".
+std::string add_plot(Report& report, const Plot& plot);
 
 }  // namespace splatscope::studies

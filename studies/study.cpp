@@ -104,10 +104,10 @@ void Findings::compare(const std::vector<Comparison>& comparisons) {
 }
 
 void Findings::plot(const std::string& name, const Plot& plot) {
-  const std::string svg = svg_of(plot);
+  const std::string svg = add_plot(report_, plot);
+  if (svg.empty()) return say(fmt::format("no {}.svg: the report says why\n", name));
   announce(results_, folder_.path(), name + ".svg");
   traces::write_file(folder_.path() / (name + ".svg"), svg);
-  report_.drawing(plot.title, svg);
 }
 
 void Findings::write(double host_seconds) {
