@@ -139,7 +139,7 @@ void run(const Options& options, bool quiet) {
   auto opened = studies::open_input(options.input, loading.callback());
   loading.clear();
   expect_apart(options, studies::files_of(opened));
-  if (map) studies::expect_scene(opened, options.input);
+  if (map) studies::expect_reference(opened, *map, options.input);
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::reference_of(opened, *map);
   ProgressBar recording("recording", quiet);

@@ -62,9 +62,11 @@ Opened open_input(const std::string& scene_or_trace, const Progress& progress) {
   return traces::load_scene(text, progress);
 }
 
-void expect_scene(const Opened& opened, const std::string& name) {
+void expect_reference(const Opened& opened, kernels::ScreenMap map, const std::string& name) {
   if (std::holds_alternative<Trace>(opened))
     throw UserError(name, 0, "a trace has no surfels to draw a reference of, expected a scene");
+  if (std::holds_alternative<traces::VolumeScene>(opened) && map == kernels::ScreenMap::perspective)
+    throw UserError("--reference", 0, "perspective is a map of surfels, expected affine for a volume");
 }
 
 kernels::ScreenSpacePicture reference_of(const Opened& opened, kernels::ScreenMap map) {
@@ -121,37 +123,22 @@ namespace {
 // The throughput of each draw after its function, while its work is at hand.
 FrameRun run_throughput(const Trace& trace, const Machine& machine, const RenderOptions& options,
                         const Progress& progress, const OnFrame& on_frame) {
-  double seconds = 0;
-  const auto timed = [&](auto run) {
-    const auto start = HostClock::now();
-    run();
-    seconds += seconds_since(start);
-  };
   sim::ThroughputEstimate estimate(trace, machine, {});
-  FrameRun run{render(trace, options, progress, on_frame,
-                      [&](const DrawWork& work) { timed([&] { estimate.add(work); }); }),
-               {},
-               0,
-               0,
-               {},
-               {}};
-  timed([&] { run.timing = estimate.result(); });
-  run.timing_seconds = seconds;
-  return run;
+  Rendered rendered =
+      render(trace, options, progress, on_frame, [&](const DrawWork& work) { estimate.add(work); });
+  return {std::move(rendered), estimate.result(), 0, {}, {}};
 }
 
 // The time after the function.
 FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
                    const TimingOptions& timing) {
-  FrameRun run{render(trace, options, progress, on_frame), {}, 0, 0, {}, {}};
+  FrameRun run{render(trace, options, progress, on_frame), {}, 0, {}, {}};
   if (timing.heat_maps) {
     for (const DrawWork& work : run.rendered.work) timing.heat_maps->add(work);
   }
   if (fidelity == Fidelity::functional) return run;
-  const auto start = HostClock::now();
   run.timing = time_frame(trace, run.rendered.work, machine, fidelity, timing);
-  run.timing_seconds = seconds_since(start);
   run.rendered.work = {};
   return run;
 }
@@ -160,7 +147,6 @@ FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity
 FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelity,
                     const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
                     const TimingOptions& timing) {
-  const auto start = HostClock::now();
   WorkQueue queue;
   std::future<Rendered> function = std::async(std::launch::async, [&] {
     try {
@@ -181,8 +167,7 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
   sim::Result result = sim::simulate_beside(
       trace, [&](std::size_t) -> const DrawWork& { return queue.next(); }, machine, scheduler, progress,
       timing.observers);
-  const double seconds = seconds_since(start);
-  return {function.get(), std::move(result), 0, seconds, {}, {}};
+  return {function.get(), std::move(result), 0, {}, {}};
 }
 
 }  // namespace

@@ -52,8 +52,9 @@ using Opened = std::variant<Trace, traces::Scene, traces::VolumeScene>;
 // A trace file (".trace"), a scene file, or a ready scene by its name: read and checked.
 Opened open_input(const std::string& scene_or_trace, const Progress& progress = {});
 
-// Throws UserError for a trace, which knows nothing to draw a reference of.
-void expect_scene(const Opened& opened, const std::string& name);
+// Throws UserError for a trace, which knows nothing to draw a reference of, and for a volume by a map that is
+// one of surfels.
+void expect_reference(const Opened& opened, kernels::ScreenMap map, const std::string& name);
 
 // What the frame of a scene should be: surfels by `map`, a volume in software with the same sheets.
 kernels::ScreenSpacePicture reference_of(const Opened& opened, kernels::ScreenMap map);
@@ -73,7 +74,6 @@ struct FrameRun {
   Rendered rendered;
   std::optional<sim::Result> timing;          // absent: functional
   double host_seconds = 0;                    // function and timing
-  double timing_seconds = 0;                  // of these, for the timing
   std::vector<HeatMap> heat_maps;             // where they are asked for
   std::optional<AgainstReference> reference;  // where it is asked for
   std::optional<std::uint64_t> seed = {};     // of the samples of `sampled`

@@ -73,7 +73,8 @@ constexpr Total kTotals[] = {
      &RenderCounters::triangles_not_finite},
     {"triangles_back_facing", "triangles", "dropped by the cull mode",
      &RenderCounters::triangles_back_facing},
-    {"triangles_clipped", "triangles", "cut by a clip plane", &RenderCounters::triangles_clipped},
+    {"triangles_clipped", "triangles", "that clipping made more than one of",
+     &RenderCounters::triangles_clipped},
     {"quads", "quads", "2x2 pixels with coverage", &RenderCounters::quads},
     {"fragments", "pixels", "covered, each triangle by itself", &RenderCounters::fragments},
     {"fragments_passed", "pixels", "of these, those that passed the depth test",
@@ -179,8 +180,13 @@ nlohmann::ordered_json timing_json(const sim::Result& timing) {
 nlohmann::ordered_json settings_json(const Machine& machine) {
   Json settings = Json::object();
   for (const machine::ParameterValue& parameter : machine::describe(machine))
-    if (parameter.origin.confidence == "set") settings[parameter.name] = parameter.value;
+    if (parameter.origin.confidence == "set") settings[parameter.name] = unquoted(parameter.value);
   return settings;
+}
+
+std::string unquoted(std::string_view value) {
+  const bool is_quoted = value.size() >= 2 && value.starts_with('"') && value.ends_with('"');
+  return std::string(is_quoted ? value.substr(1, value.size() - 2) : value);
 }
 
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,
@@ -211,7 +217,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   if (run.reference) results["reference"] = reference_json(run.reference->comparison);
   results["host"] = {{"seconds", run.host_seconds}};
   if (run.timing) {
-    results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.timing_seconds;
+    results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.host_seconds;
   }
   return results;
 }

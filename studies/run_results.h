@@ -12,8 +12,10 @@ namespace splatscope::studies {
 // them.
 nlohmann::ordered_json timing_json(const sim::Result& timing);
 
-// The parameters of a machine that the command line set, as TOML: {"vertex.units": "4"}.
+// The parameters of a machine that the command line set: {"vertex.units": "4", "numbers.frame": "half"}.
 nlohmann::ordered_json settings_json(const Machine& machine);
+// A value of --set or --sweep as it stands there: a word without the quotes that TOML wants.
+std::string unquoted(std::string_view value);
 
 // The figures of a run, as the documentation of result files lists them.
 nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fidelity fidelity,

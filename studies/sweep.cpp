@@ -105,7 +105,7 @@ SweptParameter swept_parameter(std::string_view text) {
     for (std::size_t end = equals; end < text.size();) {
       const std::size_t begin = end + 1;
       end = std::min(text.find(',', begin), text.size());
-      parameter.values.emplace_back(text.substr(begin, end - begin));
+      parameter.values.push_back(unquoted(text.substr(begin, end - begin)));
     }
   }
   if (parameter.key.empty() || equals + 1 == text.size())

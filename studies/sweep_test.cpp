@@ -167,6 +167,13 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
   EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1"}}}, Fidelity::functional), UserError);
 }
 
+TEST(SweptParameters, MayStandInQuotes) {
+  EXPECT_EQ(swept_parameter("numbers.frame=half,\"unorm8\"").values,
+            (std::vector<std::string>{"half", "unorm8"}));
+  EXPECT_EQ(splatscope::error_of([] { swept_parameter("numbers.frame=half,\"half\""); }),
+            "--sweep: \"numbers.frame=half,\"half\"\" has half twice, expected each value once");
+}
+
 TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {
   const auto error_of = [](const std::vector<std::string>& swept, const std::vector<std::string>& set) {
     return splatscope::error_of([&] { swept_parameters(swept, set); });

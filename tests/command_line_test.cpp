@@ -140,6 +140,22 @@ TEST(CommandLine, RecordedTraceTellsWhatItHolds) {
   EXPECT_NE(info.out.find("draw 2 triangles, splat_ewa.vs"), std::string::npos) << info.out;
 }
 
+TEST(CommandLine, TraceInfoTellsAllThatATraceHolds) {
+  const Outcome info = run_program({"trace", "info", SPLATSCOPE_SOURCE "/tests/traces/version_1.trace"});
+  EXPECT_EQ(info.out,
+            "frame      640 x 4096\n"
+            "frames     1\n"
+            "buffer     0: 100 bytes in AGP memory\n"
+            "buffer     1: 14 bytes in video memory\n"
+            "texture    0: 3 x 2, 8-bit alpha\n"
+            "program    0: a.vs, 20 bytes\n"
+            "program    1: b.ps, 31 bytes\n"
+            "command    0: clear to r 0.25 g 0.5 b 0.75 a 1, depth 0.5\n"
+            "command    1: draw 2 triangles, a.vs, b.ps, 20 bytes a vertex from AGP memory, texture 0, depth "
+            "write\n"
+            "command    2: normalize on the host\n");
+}
+
 TEST(CommandLine, MachinesAreListedAndShown) {
   const Outcome list = run_program({"machine", "list"});
   EXPECT_EQ(list.status, 0) << list.error;

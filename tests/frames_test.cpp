@@ -68,6 +68,9 @@ TEST(Frames, FloatPictureIsTheReference) {
       << "worst " << with_texels.surface.worst << ", " << with_texels.fringe.worst << " /255";
 }
 
+// Normalised per pixel, what is left is the rounding of some nine splats to steps of 1/255 each, divided by
+// their weight of about 0.7: 1.2 steps in the mean square, 46 dB. Per surfel, weights that are the same in
+// all of a splat ripple between the centres.
 TEST(Frames, EightBitPicturesComeNearTheReference) {
   const kernels::SplatSums reference =
       single_surface_reference(paper_scene(traces::Algorithm::ewa_per_pixel));
@@ -77,8 +80,8 @@ TEST(Frames, EightBitPicturesComeNearTheReference) {
       return psnr(drawn(paper_scene(algorithm), formats).frame, reference);
     };
     const double per_surfel = decibels(traces::Algorithm::ewa_per_surfel);
-    EXPECT_GE(decibels(traces::Algorithm::ewa_per_pixel), 34) << name;
-    EXPECT_GE(per_surfel, 28) << name;
+    EXPECT_GE(decibels(traces::Algorithm::ewa_per_pixel), 45) << name;
+    EXPECT_GE(per_surfel, 31) << name;
     EXPECT_LT(decibels(traces::Algorithm::no_ewa), per_surfel - 6) << name << ": clearly worse without EWA";
   }
 }

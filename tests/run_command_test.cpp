@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "command_line.h"
 #include "studies/testing/read_image.h"
@@ -43,6 +44,9 @@ TEST(CommandLine, RunWritesItsResults) {
   const auto& frame = results["frames"].at(0);
   EXPECT_NEAR(frame["frames_per_second"].get<double>() * frame["milliseconds"].get<double>(), 1000, 1e-6);
   EXPECT_EQ(frame["event_hash"].get<std::string>().size(), 16u);
+  const auto& host = results["host"];  // function and timing, at any fidelity
+  EXPECT_NEAR(host["cycles_per_second"].get<double>() * host["seconds"].get<double>(),
+              frame["cycles"].get<double>(), 1e-6 * frame["cycles"].get<double>());
   for (const auto& unit : results["units"]) {
     const std::uint64_t booked = unit["busy"].get<std::uint64_t>() + unit["starved"].get<std::uint64_t>() +
                                  unit["blocked"].get<std::uint64_t>() + unit["idle"].get<std::uint64_t>();
@@ -58,13 +62,14 @@ TEST(CommandLine, TheResultsSayWhatWasSet) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
   const auto results_of = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"small.toml", "--set", "memory.channels=2", "--fidelity", "sampled"});
+    arguments.insert(arguments.end(), {"small.toml", "--set", "memory.channels=2", "--set",
+                                       "numbers.frame=half", "--fidelity", "sampled"});
     const Outcome outcome = run_program(arguments, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.error;
     return nlohmann::json::parse(text_of(folder.path() / arguments[2] / "results.json"));
   };
   const auto run = results_of({"run", "--out", "a", "--seed", "7"});
-  EXPECT_EQ(run["set"], (nlohmann::json{{"memory.channels", "2"}}));
+  EXPECT_EQ(run["set"], (nlohmann::json{{"memory.channels", "2"}, {"numbers.frame", "half"}}));
   EXPECT_EQ(run["seed"], 7);
   EXPECT_EQ(run["frames"][0]["cycles_plus_minus"], 0.0) << "short draws are simulated whole";
   const auto swept = results_of({"sweep", "--out", "b", "--sweep", "vertex.units=1,2"});
@@ -72,18 +77,36 @@ TEST(CommandLine, TheResultsSayWhatWasSet) {
   EXPECT_EQ(swept["points"][0]["set"], (nlohmann::json{{"vertex.units", "1"}}));
 }
 
-TEST(CommandLine, RunWritesItsResultsWithoutAPlotter) {
+TEST(CommandLine, ResultsAreWrittenWithoutAPlotter) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", "", 1);
-  const Outcome outcome = run_program({"run", "small.toml", "--out", "out"}, folder.path());
+  const Outcome run = run_program({"run", "small.toml", "--out", "run"}, folder.path());
+  const Outcome figure = run_program({"reproduce", "fig8", "--out", "figure"}, folder.path());
   ::setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/results.json"));
-  const std::string report = text_of(folder.path() / "out/report.html");
-  EXPECT_NE(report.find("No curves: gnuplot failed"), std::string::npos);
-  EXPECT_NE(report.find("Configuration"), std::string::npos);
+  EXPECT_EQ(run.status, 0) << run.error;
+  EXPECT_EQ(figure.status, 0) << figure.error;
+  EXPECT_NE(figure.out.find("no fig8a.svg: the report says why\n"), std::string::npos) << figure.out;
+  for (const char* out : {"run", "figure"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / out / "results.json"));
+    const std::string report = text_of(folder.path() / out / "report.html");
+    EXPECT_NE(report.find("No curves: gnuplot failed"), std::string::npos);
+    EXPECT_NE(report.find("Configuration"), std::string::npos);
+  }
+}
+
+TEST(CommandLine, AFolderOfTemporaryFilesMayHaveAnyName) {
+  const ScratchFolder folder;
+  const auto odd = folder.path() / "it's $HOME";
+  std::filesystem::create_directory(odd);
+  const char* const before = std::getenv("TMPDIR");
+  const std::string kept = before ? before : "";
+  ::setenv("TMPDIR", odd.c_str(), 1);
+  const Outcome figure = run_program({"reproduce", "fig8", "--out", "figure"}, folder.path());
+  before ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
+  EXPECT_EQ(figure.status, 0) << figure.error;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "figure/fig8a.svg")) << figure.out;
 }
 
 // Names of files are bytes, and JSON is UTF-8: what it cannot hold is replaced.
@@ -329,6 +352,28 @@ TEST(CommandLine, EveryFidelityTakesASeed) {
   }
 }
 
+// What the fidelity promises of a frame of Table 1, that is large enough to be sampled.
+TEST(CommandLine, ASampledFrameIsNearTheCyclesAndGoesByItsSeed) {
+  const ScratchFolder folder;
+  const auto frame = [&](const std::vector<std::string>& how) {
+    std::vector<std::string> arguments{"run", "checkerboard-no-ewa", "--out", "o", "--fidelity"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    const Outcome outcome = run_program(arguments, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return nlohmann::json::parse(text_of(folder.path() / "o/results.json"))["frames"].at(0);
+  };
+  const auto cycles = frame({"cycle"})["cycles"].get<double>();
+  const auto first = frame({"sampled", "--seed", "1"});
+  const auto second = frame({"sampled", "--seed", "2"});
+  for (const auto& sampled : {first, second}) {
+    EXPECT_NEAR(sampled["cycles"].get<double>(), cycles, 0.02 * cycles);
+    EXPECT_GT(sampled["cycles_plus_minus"].get<double>(), 0);
+    EXPECT_LT(sampled["cycles_plus_minus"].get<double>(), 0.02 * cycles);
+  }
+  EXPECT_EQ(frame({"sampled", "--seed", "1"})["cycles"], first["cycles"]);
+  EXPECT_NE(second["cycles"], first["cycles"]);
+}
+
 TEST(CommandLine, TraceOfASceneRunsAsTheScene) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
@@ -415,7 +460,15 @@ TEST(CommandLine, ACaptureThatSeesNothingIsWarnedOf) {
   const auto said = [&](const char* scene) {
     return run_program({"run", scene, "--fidelity", "functional", "--out", "out"}, folder.path()).out;
   };
-  const std::string faint = said("faint.toml"), small = said("small.toml");
+  const auto weights = [&] {
+    const auto surfels = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"];
+    return std::tuple(surfels["weights_captured"].get<int>(), surfels["weights_by_default"].get<int>(),
+                      surfels["weights_outside_box"].get<int>());
+  };
+  const std::string faint = said("faint.toml");
+  EXPECT_EQ(weights(), std::tuple(0, 256, 0));
+  const std::string small = said("small.toml");
+  EXPECT_EQ(weights(), std::tuple(256, 0, 0));
   EXPECT_NE(faint.find("weights: 0 captured, 0 of them a vertex; 256 seen from no view"), std::string::npos)
       << faint;
   EXPECT_NE(faint.find("warning: no view of the capture shows a surfel"), std::string::npos) << faint;

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "program.h"
+#include "command_line.h"
 #include "studies/testing/read_image.h"
 
 namespace splatscope::tests {
@@ -112,6 +112,8 @@ TEST(VolumeCommand, RunsAVolumeOnTheMachine) {
   EXPECT_GT(results["reference"]["psnr_decibels"], 36);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/report.html"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/reference.png"));
+  expect_refused(run_program({"run", "head.toml", "--reference", "perspective"}, folder.path()),
+                 "perspective is a map of surfels, expected affine for a volume");
   // What is recorded draws the same.
   const Outcome recorded = run_program({"record", "head.toml", "-o", "head.trace"}, folder.path());
   ASSERT_EQ(recorded.status, 0) << recorded.error;

@@ -101,6 +101,18 @@ void write_file(const fs::path& path, std::string_view text) {
   write_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
+namespace {
+
+void expect_writable(const fs::path& folder) {
+  try {
+    const OutputFile probe(folder / "probe");
+  } catch (const UserError&) {  // which would name the probe
+    throw UserError(folder.string(), 0, "cannot be written into, expected a writable place for the output");
+  }
+}
+
+}  // namespace
+
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;
   refuse_dash(path_);
@@ -110,7 +122,7 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   try {
     if (!fs::is_directory(path_, error))
       throw UserError(path_.string(), 0, "cannot be made a folder, expected a writable place for the output");
-    OutputFile probe(path_ / "probe");
+    expect_writable(path_);
   } catch (...) {
     take_back();
     throw;

@@ -44,8 +44,7 @@ std::string describe(const Trace& trace, const Draw& draw) {
 
 std::string describe(const Trace& trace) {
   std::string text =
-      fmt::format("version    {}\nframe      {} x {}\n", kTraceVersion, trace.width, trace.height);
-  text += fmt::format("frames     {}\n", frame_ends(trace).size());
+      fmt::format("frame      {} x {}\nframes     {}\n", trace.width, trace.height, frame_ends(trace).size());
   if (trace.surfaces != 0) text += fmt::format("surfaces   {} off-screen\n", trace.surfaces);
   for (std::size_t i = 0; i < trace.buffers.size(); ++i)
     text += fmt::format("buffer     {}: {} bytes in {} memory\n", i, trace.buffers[i].bytes.size(),

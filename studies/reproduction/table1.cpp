@@ -128,7 +128,7 @@ std::vector<Table1Row> table1_rows(const Progress& progress) {
     row.published_fps = published.fps;
     row.simulated = rate_of(*run.timing);
     row.fitted_by = fitted_parameter(machine, published.algorithm);
-    row.cycles_per_host_second = static_cast<double>(run.timing->cycles) / run.timing_seconds;
+    row.cycles_per_host_second = static_cast<double>(run.timing->cycles) / run.host_seconds;
     row.psnr = psnr(run.rendered.frame, reference);
     count_slots(trace, row);
     row.timing = *run.timing;

@@ -24,16 +24,5 @@ TEST(Table1, SimulatedRatesComeNearThePublishedOnes) {
   }
 }
 
-TEST(Table1, AtMostTwoParametersAMachineAreFitted) {
-  for (const auto name : machine::built_in_names()) {
-    int fitted = 0;
-    for (const auto& [parameter, origin] : machine::load(name).origins) {
-      fitted += origin.confidence == "fitted";
-      EXPECT_EQ(origin.confidence == "fitted", !origin.fitted_to.empty()) << parameter << ": names its row";
-    }
-    EXPECT_LE(fitted, 2) << name;
-  }
-}
-
 }  // namespace
 }  // namespace splatscope::studies
