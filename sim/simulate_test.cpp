@@ -359,5 +359,47 @@ TEST(Simulate, ASampledSurfaceIsInMemory) {
   EXPECT_EQ(statistic(simulate(made.trace, made.work, machine), "blend", "write_backs"), lines.size());
 }
 
+// A clear is of the frame: what the cache holds of a surface stays, and is written.
+TEST(Simulate, AClearLeavesTheLinesOfSurfacesAlone) {
+  RandomTrace made = simple_trace(4);
+  made.trace.surfaces = 1;
+  Machine machine;
+  machine.blend.cache_lines = machine.blend.cache_ways = 64;
+  const auto write_backs = [&](std::uint32_t target) {
+    std::get<Draw>(made.trace.commands[1]).target = target;
+    return statistic(simulate(made.trace, made.work, machine), "blend", "write_backs");
+  };
+  made.trace.commands.emplace_back(Clear{});
+  EXPECT_EQ(write_backs(0), 0u);
+  EXPECT_GT(write_backs(1), 0u);
+}
+
+// The host reads and writes as many bytes a pixel as the frame has: of float32 four times those of UNORM8.
+TEST(Simulate, TheHostsTimeGoesByTheBytesOfAPixel) {
+  Trace trace;
+  trace.width = trace.height = 64;
+  trace.commands = {NormalizeOnHost{}};
+  const auto cycles = [&](FrameFormat format) {
+    Machine machine;
+    machine.numbers.frame = format;
+    machine.clock.core_megahertz = machine.clock.bus_megahertz = 100;
+    machine.host.uncached_read_bytes = machine.host.write_bytes_per_clock = 4;
+    machine.host.uncached_read_nanoseconds = 70;
+    return simulate(trace, {}, machine).cycles;
+  };
+  // Three more reads of 7 clocks and three more clocks of writing.
+  EXPECT_EQ(cycles(FrameFormat::float32) - cycles(FrameFormat::unorm8), 64u * 64 * 3 * (7 + 1));
+}
+
+TEST(Simulate, ADepthBufferOf16BitsIsHalfAsLarge) {
+  Trace trace;
+  trace.width = trace.height = 64;
+  Machine machine;
+  machine.numbers.depth = DepthFormat::z24;
+  EXPECT_EQ(lay_out(trace, machine).depth.bytes(), 64u * 64 * 4);
+  machine.numbers.depth = DepthFormat::z16;
+  EXPECT_EQ(lay_out(trace, machine).depth.bytes(), 64u * 64 * 2);
+}
+
 }  // namespace
 }  // namespace splatscope::sim

@@ -113,7 +113,7 @@ std::uint64_t slots_of(const Result& result) {
 // and the referee, which issues each slot by itself, tells the same.
 TEST(PipelineLog, HasEverySlotOnceAndChangesNothing) {
   std::size_t rows = 0;
-  for (const unsigned seed : {3u, 7u, 11u, 20u, 21u}) {
+  for (const unsigned seed : {7u, 11u, 12u, 20u}) {
     const Log log = log_of(seed, {});
     EXPECT_EQ(log.plain.event_hash, log.result.event_hash) << seed;
     EXPECT_EQ(slots_of(log.result), log.rows.size()) << seed;

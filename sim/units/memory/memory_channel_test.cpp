@@ -135,6 +135,11 @@ TEST(MemoryChannel, TheBusTurnsBetweenReadAndWrite) {
   EXPECT_EQ(served.written, 13u + 2 + 2);
 }
 
+// Written until 13; precharge 6 clocks later, then 3 + 5 + 4, and two clocks of data.
+TEST(MemoryChannel, AWrittenRowRecoversBeforeItsPrecharge) {
+  EXPECT_EQ(serve({{0, 16, true}, {512, 16}}, spec()).answers, (std::vector<Cycle>{13 + 6 + 3 + 5 + 4 + 2}));
+}
+
 TEST(MemoryChannel, ASmallReadCostsAWholeBurst) {
   const Served served = serve({{0, 8}, {64, 16}}, spec());
   EXPECT_EQ(served.answers, (std::vector<Cycle>{13, 15}));

@@ -74,6 +74,17 @@ TEST(VertexFetch, ReadsIndicesThenVerticesAndHandsThemOutInOrder) {
   EXPECT_EQ(run.second.taken().back().second, kEndOfDraw);
 }
 
+// A triangle a clock: vertices 4 5 6 are asked for in 13, two clocks after the first, and no vertex waits.
+TEST(VertexFetch, MayTakeAllIndicesOfATriangleInAClock) {
+  testing::TestDraw draw = two_quads();
+  Machine::Fetch spec;
+  spec.indices_per_clock = 3;
+  const FetchBench run(draw, spec, 0);
+  std::vector<Cycle> left;
+  for (const auto& [at, unit] : run.order_sink.taken()) left.push_back(at - 1);
+  EXPECT_EQ(left, (std::vector<Cycle>{22, 23, 24, 25, 26, 27, 28, 29}));
+}
+
 TEST(VertexFetch, GoesToTheUnitThatIsFree) {
   testing::TestDraw draw = two_quads();
   const FetchBench run(draw, {}, 200);  // the second takes nothing until then
