@@ -286,17 +286,21 @@ class PixelValidator {
       const unsigned read = components_read(instruction, i);
       check_not_spent(instruction, source);
       if (source.file == RegisterFile::temporary) {
-        const auto& written = instruction.opcode == texld ? before_phase_ : written_;
         if (instruction.opcode == texld && !phase_marker_seen_)
           reject(program_, instruction, "texld reads r# in the second phase only, written in the first");
-        check_temporary(instruction, source.index, read, written);
+        if (instruction.opcode == texld && (read & ~before_phase_[source.index]) != 0)
+          reject(program_, instruction,
+                 fmt::format("texld reads r{0} as the first phase left it: r{0} was not written there, or is "
+                             "written again before",
+                             source.index));
+        check_temporary(instruction, source.index, read);
       } else if (source.file == RegisterFile::texture && !version_1_4_) {
         check_texture_register(instruction, source.index, read);
       }
     }
     const unsigned read = destination_components_read(instruction.opcode);
     if (version_1_4_ && read != 0 && instruction.destination.file == RegisterFile::temporary)
-      check_temporary(instruction, instruction.destination.index, read, written_);
+      check_temporary(instruction, instruction.destination.index, read);
   }
 
   // Of a source or destination: what has become the depth is no register any more.
@@ -308,9 +312,8 @@ class PixelValidator {
                          version_1_4_ ? "texdepth" : "texm3x2depth"));
   }
 
-  void check_temporary(const Instruction& instruction, std::size_t index, unsigned read,
-                       const WrittenComponents& written) const {
-    if (read & ~written[index])
+  void check_temporary(const Instruction& instruction, std::size_t index, unsigned read) const {
+    if (read & ~written_[index])
       reject(program_, instruction,
              fmt::format("r{} is read before it is written (all the components read)", index));
   }

@@ -46,7 +46,7 @@ std::vector<Parameter> number_parameters() {
       {"numbers.vertex_arithmetic", "", choice<&NumberFormats::vertex_arithmetic>(kArithmetics),
        "arithmetic of the vertex units"},
       {"numbers.color", "", choice<&NumberFormats::color>(kColorFormats),
-       "interpolated colours as the pixel unit sees them, and its output"},
+       "interpolated colours as the pixel unit sees them"},
       {"numbers.combiner", "", choice<&NumberFormats::combiner>(kCombinerFormats),
        "results in the pixel unit: binary32, or the 9-bit signed steps of register combiners"},
       {"numbers.frame", "", choice<&NumberFormats::frame>(kFrameFormats), "frame buffer, a channel"},

@@ -15,7 +15,7 @@ enum class FrameFormat : std::uint8_t { unorm8, float32, unorm10, unorm16, half 
 // ordered 4x4 dither.
 enum class FrameRounding : std::uint8_t { nearest, truncate, dither };
 
-// Interpolated colours as the pixel unit sees them, and its output to the blend unit.
+// Interpolated colours as the pixel unit sees them.
 enum class ColorFormat : std::uint8_t { unorm8, float32, unorm12 };
 
 // Results in the pixel unit: binary32 within the version's range; the 9-bit signed steps (1/255) of the
