@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 
 #include "sim/observe/time_series.h"
 #include "sim/observe/timeline.h"
@@ -22,10 +23,12 @@ struct Observed {
 };
 
 const UnitBooks& books_of(const Result& result, const std::string& unit) {
-  return *std::ranges::find(result.units, unit, &UnitBooks::name);
+  const auto books = std::ranges::find(result.units, unit, &UnitBooks::name);
+  if (books == result.units.end()) throw std::runtime_error("no unit " + unit);
+  return *books;
 }
 
-constexpr unsigned kSeeds[] = {7, 11, 12, 20};  // of traces that draw triangles with colours
+constexpr unsigned kSeeds[] = {7, 11, 12, 20};  // of traces with draws
 
 Observed observe(unsigned seed, const LogWindow& window, Cycle interval = 100) {
   RandomMaker maker(seed);
@@ -37,7 +40,7 @@ Observed observe(unsigned seed, const LogWindow& window, Cycle interval = 100) {
   Observer* const observers[] = {&timeline, &series};
   Observed out;
   out.plain = simulate(made.trace, made.work, machine);
-  EXPECT_GT(books_of(out.plain, "blend").busy, 0u) << "seed " << seed << " draws nothing";
+  EXPECT_GT(books_of(out.plain, "raster").busy, 0u) << "seed " << seed << " draws nothing";
   out.result = simulate(made.trace, made.work, machine, Scheduler::skip_ahead, {}, observers);
   out.timeline = timeline_text.str();
   out.series = series_text.str();
