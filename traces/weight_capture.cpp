@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "kernels/bounds.h"
+#include "kernels/sphere_points.h"
 #include "model/render.h"
 #include "model/stop.h"
 #include "traces/edges.h"
@@ -30,14 +31,6 @@ constexpr double kCaptureFieldOfView = 45;  // degrees
 // How far a quad's corners are from its surfel's centre.
 double corner_distance(const Surfel& surfel, const Splatting& splatting) {
   return std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff)) * surfel.radius;
-}
-
-// Spherical Fibonacci points: `count` directions spread evenly.
-glm::dvec3 direction(int index, int count) {
-  const double z = 1 - (2 * index + 1.0) / count;
-  const double angle = 2 * std::numbers::pi * index / std::numbers::phi;
-  const double ring = std::sqrt(1 - z * z);
-  return {ring * std::cos(angle), ring * std::sin(angle), z};
 }
 
 // Looks at the whole sphere from one side.
@@ -69,7 +62,8 @@ class CapturedViews {
     RenderOptions options;
     options.formats = formats;
     for (int i = 0; i < capture.views; ++i) {
-      const CaptureView view = looking_from(sphere, direction(i, capture.views), capture.frame_size);
+      const glm::dvec3 direction = kernels::sphere_point(i, capture.views).place;
+      const CaptureView view = looking_from(sphere, direction, capture.frame_size);
       if (may_be_asked(view, surfels, splatting)) views_.push_back(view);
     }
     if (views_.empty()) return;
