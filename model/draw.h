@@ -8,7 +8,6 @@
 
 #include "model/pixel/pixel_program.h"
 #include "model/primitive/primitive.h"
-#include "model/raster/interpolate.h"
 #include "model/render.h"
 #include "model/vertex/vertex_program.h"
 

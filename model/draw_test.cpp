@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <random>
-#include <span>
 #include <vector>
 
 #include "model/testing/draws.h"

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "model/output/output.h"

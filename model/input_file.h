@@ -2,7 +2,6 @@
 
 #include <toml++/toml.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>

@@ -1,6 +1,5 @@
 #include "sim/simulate.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <iterator>

@@ -1,6 +1,5 @@
 #include "sim/unit_list.h"
 
-#include <algorithm>
 #include <iterator>
 
 namespace splatscope::sim {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "model/testing/scratch_folder.h"
 #include "studies/peak_memory.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <string>
 
 #include "studies/reference_comparison.h"
 #include "studies/run.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "studies/measure.h"
 #include "studies/run.h"
 #include "traces/gamma.h"

@@ -4,7 +4,6 @@
 
 #include <sstream>
 
-#include "model/error.h"
 #include "model/testing/error_of.h"
 
 namespace splatscope::studies {

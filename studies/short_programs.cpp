@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
+#include <string>
 
 #include "kernels/splat_programs.h"
 #include "model/isa/analysis.h"

@@ -12,6 +12,7 @@
 #include "studies/measure.h"
 #include "studies/own_program.h"
 #include "studies/run_results.h"
+#include "studies/work_cache.h"
 
 namespace splatscope::studies {
 namespace {

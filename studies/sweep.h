@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "studies/run.h"
-#include "studies/work_cache.h"
 
 // One frame, its function once, its timing on many machines.
 namespace splatscope::studies {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernels/reference/volume/fast_volume.h"
+#include "kernels/reference/volume/volume_rendering.h"
 #include "studies/image_io.h"
 #include "studies/measure.h"
 #include "studies/result_files.h"

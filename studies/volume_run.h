@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <string>
 
-#include "kernels/reference/volume/volume_rendering.h"
 #include "studies/study.h"
 #include "traces/volumes/volume_scene.h"
 

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "program.h"
 
@@ -17,6 +20,22 @@ inline void expect_refused(const Outcome& outcome, const std::string& part) {
   EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
   EXPECT_NE(outcome.error.find(part), std::string::npos) << outcome.error;
   EXPECT_NE(outcome.error.find("expected"), std::string::npos) << outcome.error;
+}
+
+// By the names of what is in it.
+inline std::map<std::string, std::string> texts_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> texts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    texts[entry.path().filename().string()] = entry.is_directory() ? "" : text_of(entry.path());
+  return texts;
+}
+
+// The same of a command line that is refused before any work: all files are as they were.
+inline void expect_refused(const ScratchFolder& folder, const std::vector<std::string>& arguments,
+                           const std::string& part) {
+  const auto before = texts_in(folder.path());
+  expect_refused(run_program(arguments, folder.path()), part);
+  EXPECT_EQ(texts_in(folder.path()), before);
 }
 
 inline constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 1 2\n";

@@ -53,9 +53,9 @@ TEST(CommandLine, WrongUseIsExit2) {
 
 TEST(CommandLine, TraceThatIsNone) {
   const ScratchFolder folder;
-  expect_refused(run_program({"trace", "info", "none.trace"}, folder.path()), "none.trace: ");
+  expect_refused(folder, {"trace", "info", "none.trace"}, "none.trace: ");
   folder.file("a.trace", "no trace at all");
-  expect_refused(run_program({"trace", "info", "a.trace"}, folder.path()), "a.trace: is no trace");
+  expect_refused(folder, {"trace", "info", "a.trace"}, "a.trace: is no trace");
 }
 
 TEST(CommandLine, SampleMakesASceneOfAMesh) {
@@ -74,13 +74,13 @@ TEST(CommandLine, SampleMakesASceneOfAMesh) {
 TEST(CommandLine, SampleRefusesWhatItCannotUse) {
   const ScratchFolder folder;
   folder.file("square.obj", kSquare);
-  expect_refused(run_program({"sample", "none.obj", "-o", "s.ply"}, folder.path()), "none.obj: ");
-  expect_refused(run_program({"sample", "square.obj", "-o", "none/s.ply"}, folder.path()), "none/s.ply: ");
-  expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", "--pattern", "tartan"}, folder.path()),
+  expect_refused(folder, {"sample", "none.obj", "-o", "s.ply"}, "none.obj: ");
+  expect_refused(folder, {"sample", "square.obj", "-o", "none/s.ply"}, "none/s.ply: ");
+  expect_refused(folder, {"sample", "square.obj", "-o", "s.ply", "--pattern", "tartan"},
                  "tartan not in {own,plain,checker");
-  expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", "-n", "0"}, folder.path()), "-n: ");
+  expect_refused(folder, {"sample", "square.obj", "-o", "s.ply", "-n", "0"}, "-n: ");
   for (const std::string option : {"--shading", "--pattern-scale"})
-    expect_refused(run_program({"sample", "square.obj", "-o", "s.ply", option, "nan"}, folder.path()),
+    expect_refused(folder, {"sample", "square.obj", "-o", "s.ply", option, "nan"},
                    option + ": \"nan\", expected a number");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "s.ply"));
 }
@@ -102,11 +102,10 @@ constexpr BadScene kBadScenes[] = {
 
 TEST(CommandLine, WrongScenesLeaveNoTrace) {
   const ScratchFolder folder;
-  expect_refused(run_program({"record", "none.toml", "-o", "a.trace"}, folder.path()),
-                 "none.toml: no such file");
+  expect_refused(folder, {"record", "none.toml", "-o", "a.trace"}, "none.toml: no such file");
   for (const BadScene& bad : kBadScenes) {
     folder.file("bad.toml", bad.text);
-    expect_refused(run_program({"record", "bad.toml", "-o", "a.trace"}, folder.path()), bad.error);
+    expect_refused(folder, {"record", "bad.toml", "-o", "a.trace"}, bad.error);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"bad.toml"});
   }
 }
@@ -114,8 +113,7 @@ TEST(CommandLine, WrongScenesLeaveNoTrace) {
 TEST(CommandLine, UnwritableTraceIsNotedBeforeTheWork) {
   const ScratchFolder folder;
   const std::string scene = "checkerboard-no-ewa";
-  expect_refused(run_program({"record", scene, "-o", "none/a.trace"}, folder.path()),
-                 "none/a.trace: cannot be written");
+  expect_refused(folder, {"record", scene, "-o", "none/a.trace"}, "none/a.trace: cannot be written");
   expect_refused(run_program({"record", scene, "-o", folder.path().string()}), "is a folder, expected");
   EXPECT_TRUE(folder.names().empty());
 }
@@ -172,11 +170,11 @@ TEST(CommandLine, WrongMachinesAreRefused) {
   expect_refused(run_program({"machine", "show", "voodoo"}), "voodoo");
   expect_refused(run_program({"machine", "show", "none.toml"}), "none.toml");
   folder.file("m.toml", "\n[vertex]\nunts = 2\n");
-  expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:3: ");
+  expect_refused(folder, {"machine", "show", "m.toml"}, "m.toml:3: ");
   folder.file("m.toml", "[vertex]\nunits = true\n");
-  expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:2: ");
+  expect_refused(folder, {"machine", "show", "m.toml"}, "m.toml:2: ");
   folder.file("m.toml", "[vertex]\nunits = 1000\n");
-  expect_refused(run_program({"machine", "show", "m.toml"}, folder.path()), "m.toml:2: ");
+  expect_refused(folder, {"machine", "show", "m.toml"}, "m.toml:2: ");
 }
 
 TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
@@ -193,8 +191,8 @@ TEST(CommandLine, ExplainTellsWhatMadeAPixel) {
                                   folder.path());
   EXPECT_NE(own.out.find("visibility.vs replaced by own.vs (1 slots, was 13)"), std::string::npos) << own.out;
   EXPECT_NE(own.out.find("oPos after  = (1, 1, 0, 1)"), std::string::npos) << own.out;
-  expect_refused(run_program({"explain", "small.toml", "--pixel", "32"}, folder.path()), "--pixel");
-  expect_refused(run_program({"explain", "small.toml", "--pixel", "4000,1"}, folder.path()), "--pixel");
+  expect_refused(folder, {"explain", "small.toml", "--pixel", "32"}, "--pixel");
+  expect_refused(folder, {"explain", "small.toml", "--pixel", "4000,1"}, "--pixel");
   EXPECT_EQ(run_program({"explain", "small.toml"}, folder.path()).status, 2);
 }
 

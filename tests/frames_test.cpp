@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
 #include "ewa_bounds.h"
 #include "kernels/object_space_ewa/alpha_texture.h"
+#include "kernels/sphere_points.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
 #include "traces/splat_trace.h"
@@ -94,16 +96,16 @@ traces::Scene sphere_scene() {
       "[camera]\neye = [1, 1, 2.6]\ntarget = [0, 0, 0]\nfov_y_degrees = 45\nnear = 1\nfar = 5\n"
       "[splatting]\nalgorithm = \"ewa-per-pixel\"\ngamma = 0.6\n",
       "sphere.toml");
-  const double spacing = std::sqrt(4 * std::numbers::pi / kPoints);
+  const double spacing = kernels::sphere_spacing(kPoints);
   scene.splatting.depth_offset = spacing;
   scene.surfels.clear();
   for (int i = 0; i < kPoints; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kPoints, angle = 2 * std::numbers::pi * i / std::numbers::phi;
-    const double ring = std::sqrt(1 - z * z);
+    const glm::dvec3 place = kernels::sphere_point(i, kPoints).place;
     traces::Surfel surfel;
-    surfel.position = surfel.normal = glm::dvec3(ring * std::cos(angle), ring * std::sin(angle), z);
+    surfel.position = surfel.normal = place;
     surfel.radius = static_cast<float>(std::numbers::sqrt2 * spacing);
-    surfel.color = glm::vec3(std::sin(9 * z) > 0 ? 0.9 : 0.2, std::sin(4 * angle) > 0 ? 0.8 : 0.3, 0.5);
+    surfel.color = glm::vec3(std::sin(9 * place.z) > 0 ? 0.9 : 0.2,
+                             std::sin(4 * std::atan2(place.y, place.x)) > 0 ? 0.8 : 0.3, 0.5);
     scene.surfels.push_back(surfel);
   }
   return scene;

@@ -1,35 +1,14 @@
-#include <gtest/gtest.h>
-
 #include <fstream>
-#include <map>
-#include <string>
-#include <vector>
 
-#include "program.h"
+#include "command_line.h"
 
 namespace splatscope::tests {
 namespace {
 
-// Files that only a scene names, or a mesh or a header that it names, are not written over: exit 2, and all
-// is as it was.
+// Files that only a scene names, or a mesh or a header that it names, are not written over.
 class NamedFiles : public testing::Test {
  protected:
-  void expect_refused(const std::vector<std::string>& arguments, const std::string& part) const {
-    const auto before = files();
-    const Outcome outcome = run_program(arguments, folder_.path());
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_NE(outcome.error.find(part), std::string::npos) << outcome.error;
-    EXPECT_EQ(files(), before);
-  }
-
   const ScratchFolder folder_;
-
- private:
-  std::map<std::string, std::string> files() const {
-    std::map<std::string, std::string> files;
-    for (const std::string& name : folder_.names()) files[name] = text_of(folder_.path() / name);
-    return files;
-  }
 };
 
 // Two, each of "x y z" and three numbers more.
@@ -47,9 +26,9 @@ std::string grid(const std::string& sizes, const std::string& more) {
 TEST_F(NamedFiles, OfSurfels) {
   folder_.file("scene.toml", "[surfels]\nfile = \"a.ply\"\n");
   folder_.file("a.ply", points("property float nx\nproperty float ny\nproperty float nz\n"));
-  expect_refused({"record", "scene.toml", "-o", "./a.ply"},
+  expect_refused(folder_, {"record", "scene.toml", "-o", "./a.ply"},
                  "./a.ply: is named by -o and by the scene (a.ply)");
-  expect_refused({"run", "scene.toml", "--out", "o", "--counters", "a.ply"},
+  expect_refused(folder_, {"run", "scene.toml", "--out", "o", "--counters", "a.ply"},
                  "a.ply: is named by --counters and by the scene");
 }
 
@@ -59,24 +38,26 @@ TEST_F(NamedFiles, OfAMesh) {
                "mtllib square.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
   folder_.file("square.mtl", "newmtl paint\nKd 1 0 0\nmap_Kd frame.png\nmap_Bump bump.png\nmap_d d.png\n");
   folder_.file("frame.png", "no picture, which is read as one");
-  expect_refused({"record", "mesh.toml", "-o", "square.obj"}, "by -o and by the scene (square.obj)");
-  expect_refused({"record", "mesh.toml", "-o", "square.mtl"}, "square.mtl: is named by -o and by the mesh");
-  expect_refused({"sample", "square.obj", "-n", "20", "-o", "square.mtl"}, "by -o and by the mesh");
-  expect_refused({"sample", "square.obj", "-n", "20", "-o", "frame.png"},
+  expect_refused(folder_, {"record", "mesh.toml", "-o", "square.obj"}, "by -o and by the scene (square.obj)");
+  expect_refused(folder_, {"record", "mesh.toml", "-o", "square.mtl"},
+                 "square.mtl: is named by -o and by the mesh");
+  expect_refused(folder_, {"sample", "square.obj", "-n", "20", "-o", "square.mtl"}, "by -o and by the mesh");
+  expect_refused(folder_, {"sample", "square.obj", "-n", "20", "-o", "frame.png"},
                  "by -o and by the mesh (frame.png)");
   for (const char* texture : {"bump.png", "d.png"})
-    expect_refused({"sample", "square.obj", "-n", "20", "-o", texture}, "by -o and by the mesh");
-  expect_refused({"run", "mesh.toml", "--out", "."}, "by the mesh and by a result in --out");
+    expect_refused(folder_, {"sample", "square.obj", "-n", "20", "-o", texture}, "by -o and by the mesh");
+  expect_refused(folder_, {"run", "mesh.toml", "--out", "."}, "by the mesh and by a result in --out");
   folder_.file("bare.obj", "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
-  expect_refused({"sample", "bare.obj", "-n", "20", "-o", "paint.mtl"}, "by -o and by the mesh (paint.mtl)");
+  expect_refused(folder_, {"sample", "bare.obj", "-n", "20", "-o", "paint.mtl"},
+                 "by -o and by the mesh (paint.mtl)");
 }
 
 // Sampling can take minutes: this mesh is one that it would refuse.
 TEST_F(NamedFiles, OfAMeshBeforeItIsSampled) {
   folder_.file("flat.obj", "mtllib flat.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   folder_.file("flat.mtl", "newmtl paint\n");
-  expect_refused({"sample", "flat.obj", "-o", "o.ply"}, "no triangle of it has a surface");
-  expect_refused({"sample", "flat.obj", "-o", "flat.mtl"}, "by -o and by the mesh (flat.mtl)");
+  expect_refused(folder_, {"sample", "flat.obj", "-o", "o.ply"}, "no triangle of it has a surface");
+  expect_refused(folder_, {"sample", "flat.obj", "-o", "flat.mtl"}, "by -o and by the mesh (flat.mtl)");
 }
 
 TEST_F(NamedFiles, OfAVolume) {
@@ -90,19 +71,20 @@ TEST_F(NamedFiles, OfAVolume) {
     places.write(reinterpret_cast<const char*>(&place), sizeof(place));
   }
   places.close();
-  expect_refused({"record", "grid.toml", "-o", "p.nhdr"}, "by -o and by the scene (p.nhdr)");
-  expect_refused({"record", "grid.toml", "-o", "p.raw"}, "p.raw: is named by -o and by the header (p.raw)");
-  expect_refused({"record", "grid.toml", "-o", "frame.exr"}, "by -o and by the header (frame.exr)");
-  expect_refused({"volume", "grid.toml", "--out", "."},
+  expect_refused(folder_, {"record", "grid.toml", "-o", "p.nhdr"}, "by -o and by the scene (p.nhdr)");
+  expect_refused(folder_, {"record", "grid.toml", "-o", "p.raw"},
+                 "p.raw: is named by -o and by the header (p.raw)");
+  expect_refused(folder_, {"record", "grid.toml", "-o", "frame.exr"}, "by -o and by the header (frame.exr)");
+  expect_refused(folder_, {"volume", "grid.toml", "--out", "."},
                  "by the header and by a result in --out (./frame.exr)");
 }
 
 TEST_F(NamedFiles, OfIrregularSamples) {
   folder_.file("set.toml", "[volume]\nsamples = \"results.json\"\n");
   folder_.file("results.json", points("property float value\nproperty float radius\nproperty float w\n"));
-  expect_refused({"run", "set.toml", "--out", "."}, "by the scene and by a result in --out");
-  expect_refused({"volume", "set.toml", "--out", "."}, "by the scene and by a result in --out");
-  expect_refused({"sweep", "set.toml", "--sweep", "vertex.units=1,2", "--out", "."},
+  expect_refused(folder_, {"run", "set.toml", "--out", "."}, "by the scene and by a result in --out");
+  expect_refused(folder_, {"volume", "set.toml", "--out", "."}, "by the scene and by a result in --out");
+  expect_refused(folder_, {"sweep", "set.toml", "--sweep", "vertex.units=1,2", "--out", "."},
                  "results.json: is named by the scene and by a result in --out");
 }
 

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -137,7 +136,7 @@ TEST(CommandLine, RunWritesATimelineAndCounters) {
   EXPECT_EQ(text_of(folder.path() / "c.csv").substr(0, 6), "cycle,");
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"a", "c.csv", "small.toml", "t.json"}));
   run.insert(run.end(), {"--fidelity", "functional"});
-  expect_refused(run_program(run, folder.path()), "--fidelity");
+  expect_refused(folder, run, "--fidelity");
 }
 
 TEST(CommandLine, AWindowAfterTheRunIsSaidToShowNothing) {
@@ -173,7 +172,7 @@ TEST(CommandLine, ATimelineMayLieInANewFolder) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "new/o/t.json"));
   std::filesystem::remove_all(folder.path() / "new");
   run[1] = "none.toml";
-  expect_refused(run_program(run, folder.path()), "none.toml");
+  expect_refused(folder, run, "none.toml");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
 }
 
@@ -234,13 +233,6 @@ TEST(CommandLine, ALaterRunTakesTheFolderOver) {
   }
 }
 
-std::map<std::string, std::string> texts_in(const std::filesystem::path& folder) {
-  std::map<std::string, std::string> texts;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    texts[entry.path().filename().string()] = entry.is_directory() ? "" : text_of(entry.path());
-  return texts;
-}
-
 // The new results stand in the folder, or the old ones: never both.
 TEST(CommandLine, ARunThatFailsLeavesTheFolderAsItWas) {
   const ScratchFolder folder;
@@ -258,7 +250,7 @@ TEST(CommandLine, ARunThatFailsLeavesTheFolderAsItWas) {
     std::filesystem::remove(folder.path() / "o" / taken);
     std::filesystem::create_directory(folder.path() / "o" / taken);
     before = texts_in(folder.path() / "o");
-    expect_refused(run_program({"run", "two.trace", "--out", "o"}, folder.path()),
+    expect_refused(folder, {"run", "two.trace", "--out", "o"},
                    fmt::format("o/{}: is a folder, expected a place for a file", taken));
     EXPECT_TRUE(before == texts_in(folder.path() / "o")) << taken;
     std::filesystem::remove(folder.path() / "o" / taken);

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <numbers>
+
+#include "kernels/bounds.h"
 
 namespace splatscope::traces {
 namespace {
@@ -32,15 +33,6 @@ struct Axes {
   }
 };
 
-struct Box {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-  void add(const glm::dvec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  glm::dvec3 middle() const { return 0.5 * (low + high); }
-};
-
 // Distance from the target at which all surfels are within the frame.
 double fitting_distance(std::span<const Surfel> surfels, const Axes& axes, const glm::dvec3& target,
                         const glm::dvec2& tangent) {
@@ -60,13 +52,13 @@ void frame_camera(std::span<const Surfel> surfels, const Frame& frame, const Cam
   if (surfels.empty()) return;
   if (!given.up) camera.up = {0, 1, 0};
   if (!given.fov_y_degrees) camera.fov_y_degrees = kFieldOfView;
-  Box box;
+  kernels::Box box;
   for (const Surfel& s : surfels) box.add(glm::dvec3(s.position));
   if (!given.target) camera.target = box.middle();
   if (!given.eye) {
     const Axes axes(-kFrom, camera.up);
     if (!given.target) {  // the middle of what is seen, not of the box
-      Box seen;
+      kernels::Box seen;
       for (const Surfel& s : surfels) seen.add(axes.of(glm::dvec3(s.position) - camera.target));
       camera.target += seen.middle().x * axes.right + seen.middle().y * axes.up;
     }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "model/error.h"
 #include "traces/gamma.h"
 #include "traces/models/mesh_file.h"

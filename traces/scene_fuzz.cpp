@@ -1,7 +1,6 @@
 // Any text: an error or the settings of a scene, never a crash. Run: tests/fuzz/README.md.
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 
 #include "model/error.h"
 #include "traces/scene_settings.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 #include <utility>

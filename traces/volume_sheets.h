@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "kernels/reference/volume/volume_rendering.h"
-#include "kernels/reference/volume/volume_splats.h"
 #include "kernels/view.h"
 
 // What the host decides of the sheets of a volume before it issues their draws: which voxels belong together,

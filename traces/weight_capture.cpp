@@ -5,14 +5,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 #include <mutex>
 #include <numbers>
 
+#include "kernels/bounds.h"
+#include "kernels/sphere_points.h"
 #include "model/render.h"
 #include "model/stop.h"
 #include "traces/edges.h"
@@ -28,38 +28,9 @@ constexpr double kSmallestCosine = 0.5;  // 60 degrees
 constexpr float kLeastCorner = 0.5f;
 constexpr double kCaptureFieldOfView = 45;  // degrees
 
-struct Sphere {
-  glm::dvec3 center{};
-  double radius = 0;
-};
-
 // How far a quad's corners are from its surfel's centre.
 double corner_distance(const Surfel& surfel, const Splatting& splatting) {
   return std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff)) * surfel.radius;
-}
-
-// About the middle of the bounding box, all quads inside.
-Sphere bounding_sphere(std::span<const Surfel> surfels, const Splatting& splatting) {
-  glm::dvec3 low(surfels.front().position), high = low;
-  for (const Surfel& surfel : surfels) {
-    low = glm::min(low, glm::dvec3(surfel.position));
-    high = glm::max(high, glm::dvec3(surfel.position));
-  }
-  Sphere sphere{0.5 * (low + high), 0};
-  for (const Surfel& surfel : surfels) {
-    const double reach =
-        glm::length(glm::dvec3(surfel.position) - sphere.center) + corner_distance(surfel, splatting);
-    sphere.radius = std::max(sphere.radius, reach);
-  }
-  return sphere;
-}
-
-// Spherical Fibonacci points: `count` directions spread evenly.
-glm::dvec3 direction(int index, int count) {
-  const double z = 1 - (2 * index + 1.0) / count;
-  const double angle = 2 * std::numbers::pi * index / std::numbers::phi;
-  const double ring = std::sqrt(1 - z * z);
-  return {ring * std::cos(angle), ring * std::sin(angle), z};
 }
 
 // Looks at the whole sphere from one side.
@@ -68,7 +39,7 @@ struct CaptureView {
   kernels::View view;
 };
 
-CaptureView looking_from(const Sphere& sphere, const glm::dvec3& from, int frame_size) {
+CaptureView looking_from(const kernels::Sphere& sphere, const glm::dvec3& from, int frame_size) {
   Camera camera;
   camera.fov_y_degrees = kCaptureFieldOfView;
   const double distance = sphere.radius / std::sin(0.5 * kCaptureFieldOfView * std::numbers::pi / 180);
@@ -86,11 +57,13 @@ class CapturedViews {
   CapturedViews(std::span<const Surfel> surfels, const Splatting& splatting, const Capture& capture,
                 const NumberFormats& formats, const std::function<void(double)>& progress)
       : both_faces_(splatting.faces != Faces::front) {
-    const Sphere sphere = bounding_sphere(surfels, splatting);
+    const kernels::Sphere sphere = kernels::bounding_sphere(
+        surfels, [&](const Surfel& surfel) { return corner_distance(surfel, splatting); });
     RenderOptions options;
     options.formats = formats;
     for (int i = 0; i < capture.views; ++i) {
-      const CaptureView view = looking_from(sphere, direction(i, capture.views), capture.frame_size);
+      const glm::dvec3 direction = kernels::sphere_point(i, capture.views).place;
+      const CaptureView view = looking_from(sphere, direction, capture.frame_size);
       if (may_be_asked(view, surfels, splatting)) views_.push_back(view);
     }
     if (views_.empty()) return;

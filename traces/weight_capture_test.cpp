@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "kernels/sphere_points.h"
 #include "traces/edges.h"
 #include "traces/gamma.h"
 #include "traces/neighbours.h"
@@ -56,10 +57,8 @@ std::vector<Surfel> jittered_square(int edge, unsigned seed) {
 std::vector<Surfel> sphere(int count, double radius) {
   std::vector<Surfel> surfels;
   for (int i = 0; i < count; ++i) {
-    const double z = 1 - (2 * i + 1.0) / count, ring = std::sqrt(1 - z * z);
-    const double angle = 2 * std::numbers::pi * i / std::numbers::phi;
     Surfel surfel;
-    surfel.normal = glm::vec3(ring * std::cos(angle), ring * std::sin(angle), z);
+    surfel.normal = kernels::sphere_point(i, count).place;
     surfel.position = surfel.normal * static_cast<float>(radius);
     surfels.push_back(surfel);
   }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <cstring>
 
 #include "kernels/object_space_ewa/quad_runner.h"

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <optional>
 #include <random>
 #include <span>
 #include <vector>

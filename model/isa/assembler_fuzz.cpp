@@ -1,7 +1,6 @@
 // Any text: an error or a program, never a crash. Run: tests/fuzz/README.md.
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 
 #include "model/error.h"
 #include "model/isa/fuzzing.h"

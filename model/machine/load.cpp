@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 
 #include "model/embedded_file.h"
 #include "model/error.h"

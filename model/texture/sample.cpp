@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "model/number/simd_steps-inl.h"
+#include "model/work/work.h"
 
 namespace splatscope::texture {
 // Of any depth. Read once a target, hence declared again.  NOLINTNEXTLINE(readability-redundant-declaration)

@@ -7,7 +7,6 @@
 
 #include "model/command/commands.h"
 #include "model/output/frame.h"
-#include "model/work/work.h"
 
 namespace splatscope::texture {
 

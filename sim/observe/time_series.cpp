@@ -1,6 +1,5 @@
 #include "sim/observe/time_series.h"
 
-#include <algorithm>
 #include <ostream>
 
 #include "sim/machine.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/bounds.h"
 #include "studies/reference_comparison.h"
 #include "studies/run.h"
 #include "traces/splat_trace.h"
@@ -16,15 +17,12 @@ constexpr double kGammas[] = {0.2, 0.3, 0.4, 0.5, 0.55, 0.6, 0.65, 0.73, 1};
 
 // The half of the surfels with the smaller x, as a user might mark a part of the model.
 void mark_half(traces::Scene& scene) {
-  glm::dvec3 low(scene.surfels.front().position), high = low;
-  for (const traces::Surfel& surfel : scene.surfels) {
-    low = glm::min(low, glm::dvec3(surfel.position));
-    high = glm::max(high, glm::dvec3(surfel.position));
-  }
-  const double margin = 0.02 * glm::length(high - low);
-  scene.capture.box_min = low - margin;
-  scene.capture.box_max = high + margin;
-  scene.capture.box_max.x = 0.5 * (low.x + high.x);
+  kernels::Box box;
+  for (const traces::Surfel& surfel : scene.surfels) box.add(glm::dvec3(surfel.position));
+  const double margin = 0.02 * glm::length(box.size());
+  scene.capture.box_min = box.low - margin;
+  scene.capture.box_max = box.high + margin;
+  scene.capture.box_max.x = box.middle().x;
 }
 
 void draw_line(glm::dvec2 from, glm::dvec2 to, Image& image) {
@@ -39,11 +37,8 @@ void draw_line(glm::dvec2 from, glm::dvec2 to, Image& image) {
 // The edges of the box of the capture, yellow.
 void draw_box(const traces::Scene& scene, Image& image) {
   const kernels::View view = traces::view_of(scene.camera, scene.frame);
-  const auto window = [&](unsigned corner) {
-    const glm::dvec3 &low = scene.capture.box_min, &high = scene.capture.box_max;
-    return view.window(view.camera_space(
-        {(corner & 1u) ? high.x : low.x, (corner & 2u) ? high.y : low.y, (corner & 4u) ? high.z : low.z}));
-  };
+  const kernels::Box box{scene.capture.box_min, scene.capture.box_max};
+  const auto window = [&](unsigned corner) { return view.window(view.camera_space(box.corner(corner))); };
   for (unsigned corner = 0; corner < 8; ++corner) {
     for (const unsigned bit : {1u, 2u, 4u}) {
       if ((corner & bit) == 0) draw_line(window(corner), window(corner | bit), image);

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <random>
 
+#include "studies/image_io.h"
 #include "studies/run.h"
 #include "traces/neighbours.h"
 #include "traces/scene_keys.h"

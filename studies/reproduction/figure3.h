@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "model/machine/machine.h"
-#include "studies/image_io.h"
 #include "studies/splat_fragments.h"
 #include "studies/study.h"
 #include "traces/scene.h"

@@ -9,6 +9,7 @@
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
+#include "kernels/sphere_points.h"
 #include "traces/models/patterns.h"
 
 namespace splatscope::studies {
@@ -25,14 +26,13 @@ double lit(const dvec3& normal) {
   return 0.3 + 0.7 * std::max(0.0, glm::dot(normal, kLight));
 }
 
-// A point of the unit sphere with tangents as far apart as `points` of them are, spread evenly (a Fibonacci
-// lattice). s x t points outward.
-Surfel sphere_point(int i, int points) {
+// One of `points` spread evenly over the unit sphere, with tangents as long as they are far apart. s x t
+// points outward.
+Surfel sphere_surfel(int i, int points) {
   Surfel surfel;
-  const double z = 1 - (2 * i + 1.0) / points, angle = 2 * std::numbers::pi * i / std::numbers::phi;
-  const double ring = std::sqrt(1 - z * z), radius = kReach * std::sqrt(4 * std::numbers::pi / points);
-  surfel.position = {ring * std::cos(angle), ring * std::sin(angle), z};
-  surfel.tangent_s = radius * dvec3(-std::sin(angle), std::cos(angle), 0);
+  const auto [place, along] = kernels::sphere_point(i, points);
+  surfel.position = place;
+  surfel.tangent_s = kReach * kernels::sphere_spacing(points) * along;
   surfel.tangent_t = glm::cross(surfel.position, surfel.tangent_s);
   return surfel;
 }
@@ -64,7 +64,7 @@ Part turned(Part part, double degrees) {
 
 void add(const Part& part, int points, SurfaceModel& model) {
   for (int i = 0; i < points; ++i) {
-    Surfel surfel = sphere_point(i, points);
+    Surfel surfel = sphere_surfel(i, points);
     surfel.position = part.axes * surfel.position + part.center;
     surfel.tangent_s = part.axes * surfel.tangent_s;
     surfel.tangent_t = part.axes * surfel.tangent_t;
@@ -126,7 +126,7 @@ SurfaceModel head_model(int points, int size) {
   };
   for (int i = 0; i < points; ++i) {
     Surfel& surfel = model.surfels[static_cast<std::size_t>(i)];
-    surfel = sphere_point(i, points);
+    surfel = sphere_surfel(i, points);
     const dvec3 u = surfel.position;
     const auto along = [&](const dvec3& tangent) {  // the surface's derivative
       return 0.5 * (surface(glm::normalize(u + tangent)) - surface(glm::normalize(u - tangent)));
@@ -138,7 +138,7 @@ SurfaceModel head_model(int points, int size) {
     const double spots = 0.85 + 0.15 * traces::noise(40.0 * u);
     surfel.color = lit(normal) * spots * dvec3(0.95, 0.75, 0.62);
   }
-  model.spacing = std::sqrt(4 * std::numbers::pi / points);
+  model.spacing = kernels::sphere_spacing(points);
   model.view = kernels::look_at({2.2, 1.2, 5.3}, {0, 0, 0}, {0, 1, 0}, 22, size, size, 3, 9);
   return model;
 }

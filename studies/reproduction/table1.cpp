@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "studies/reference_comparison.h"
 #include "studies/report/block_diagram.h"
 #include "traces/weight_capture.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <initializer_list>
 
 #include "kernels/reference/volume/procedural.h"
 

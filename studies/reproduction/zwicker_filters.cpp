@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <numbers>
+#include <string_view>
 
 #include "studies/reproduction/zwicker_volumes.h"
 

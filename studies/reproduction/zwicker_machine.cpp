@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 
 #include "kernels/reference/volume/fast_volume.h"
 #include "model/machine/parameters.h"

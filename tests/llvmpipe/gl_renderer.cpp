@@ -6,6 +6,8 @@
 #include <GLES3/gl3.h>
 #include <fmt/format.h>
 
+#include <array>
+
 #include "model/error.h"
 #include "model/isa/program.h"
 #include "tests/llvmpipe/glsl.h"

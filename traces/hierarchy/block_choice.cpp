@@ -100,13 +100,13 @@ double projected_spacing(const Block& block, double spacing, const kernels::View
   std::array<glm::dvec2, 8> window;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < window.size(); ++i) {
-    const glm::dvec3 corner = view.camera_space(block.corner(i));
+    const glm::dvec3 corner = view.camera_space(block.box.corner(i));
     nearest = std::min(nearest, corner.z);
     // Not at the near plane: clip planes fitted to the surfels cut the boxes of the blocks in front.
     if (!(nearest > 0)) return std::numeric_limits<double>::infinity();
     window[i] = view.window(corner);
   }
-  const double diagonal = glm::length(block.high - block.low);
+  const double diagonal = glm::length(block.box.size());
   if (!(diagonal > 0)) return spacing * view.eta / nearest;  // a single surfel
   double longest = 0;
   for (std::size_t i = 0; i < 4; ++i) longest = std::max(longest, glm::length(window[i] - window[7 - i]));

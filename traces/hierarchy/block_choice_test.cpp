@@ -56,19 +56,18 @@ std::vector<int> shown(const LdcTree& tree, const ChosenFrame& frame) {
 TEST(BlockChoice, SpacingIsWarpedToTheScreen) {
   const kernels::View view = kernels::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 100, 100, 1, 1000);
   Block block;
-  block.low = {-1, -1, 10};
-  block.high = {1, 1, 10};
+  block.box = {{-1, -1, 10}, {1, 1, 10}};
   EXPECT_DOUBLE_EQ(0.1 * 50 / 10, projected_spacing(block, 0.1, view));
-  block.high.z = 10 + 2;  // its diagonals are seen shorter than they are
+  block.box.high.z = 10 + 2;  // its diagonals are seen shorter than they are
   const double slanted = projected_spacing(block, 0.1, view);
   EXPECT_LT(slanted, 0.1 * 50 / 10);
   EXPECT_GT(slanted, 0.1 * 50 / 12 * std::sqrt(2.0 / 3.0));
-  block.low.z = 0.5;  // before the near plane
+  block.box.low.z = 0.5;  // before the near plane
   EXPECT_LT(projected_spacing(block, 0.1, view), 0.1 * 50 / 0.5);
   EXPECT_GT(projected_spacing(block, 0.1, view), slanted);
-  block.low.z = -0.5;  // behind the eye
+  block.box.low.z = -0.5;  // behind the eye
   EXPECT_EQ(std::numeric_limits<double>::infinity(), projected_spacing(block, 0.1, view));
-  block.low = block.high = {0, 0, 20};
+  block.box = {{0, 0, 20}, {0, 0, 20}};
   EXPECT_DOUBLE_EQ(0.1 * 50 / 20, projected_spacing(block, 0.1, view));
 }
 

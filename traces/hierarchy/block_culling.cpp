@@ -60,7 +60,7 @@ BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View
   Placed placed;
   double distance = 0;  // largest
   for (std::size_t i = 0; i < placed.corners.size(); ++i) {
-    const glm::dvec3 corner = view.camera_space(block.corner(i));
+    const glm::dvec3 corner = view.camera_space(block.box.corner(i));
     placed.corners[i] = corner;
     placed.nearest = std::min(placed.nearest, corner.z);
     placed.furthest = std::max(placed.furthest, corner.z);
@@ -68,7 +68,7 @@ BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View
   }
   const glm::dvec3 axis = view.camera_direction(block.axis);
   // A cylinder about the axis holds the centres too.
-  const double middle = view.camera_space(block.middle()).z;
+  const double middle = view.camera_space(block.box.middle()).z;
   const double across = block.width * std::sqrt(std::max(0.0, 1 - axis.z * axis.z));
   const auto [least, most] = std::minmax({axis.z * block.bottom, axis.z * block.top});
   placed.nearest = std::max(placed.nearest, middle + least - across);

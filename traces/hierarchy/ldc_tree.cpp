@@ -37,23 +37,20 @@ unsigned side_of(const glm::vec3& normal) {
 
 // The layered depth pixels of the finest level.
 struct Grid {
-  glm::dvec3 low{};
+  kernels::Box box;
   double spacing = 0;
   std::uint32_t widest = 0;  // the largest number of a cell along any axis
 
   explicit Grid(std::span<const Surfel> surfels) {
-    glm::dvec3 high(surfels.front().position);
-    low = high;
     std::vector<float> radii;
     radii.reserve(surfels.size());
     for (const Surfel& s : surfels) {
-      low = glm::min(low, glm::dvec3(s.position));
-      high = glm::max(high, glm::dvec3(s.position));
+      box.add(glm::dvec3(s.position));
       radii.push_back(s.radius);
     }
     const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
     std::ranges::nth_element(radii, middle);
-    const glm::dvec3 size = high - low;
+    const glm::dvec3 size = box.size();
     const double widest_size = std::max({size.x, size.y, size.z});
     // On a square grid the radius, the distance to the furthest of eight neighbours, is sqrt 2 spacings.
     spacing = std::max(double{*middle} / std::numbers::sqrt2, widest_size / (kCells - 1));
@@ -61,7 +58,7 @@ struct Grid {
   }
 
   Code code(const Surfel& surfel) const {
-    const glm::dvec3 cell = (glm::dvec3(surfel.position) - low) / spacing;
+    const glm::dvec3 cell = (glm::dvec3(surfel.position) - box.low) / spacing;
     Code code = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const auto number = static_cast<std::uint32_t>(std::min(cell[axis], double{kCells - 1}));
@@ -135,11 +132,9 @@ void for_each(std::span<const Surfel> finest, std::span<const Surfel> own, const
 }
 
 void bound_box(std::span<const Surfel> finest, std::span<const Surfel> own, Block& block) {
-  block.low = block.high = glm::dvec3(finest.front().position);
   block.least_radius = block.greatest_radius = double{finest.front().radius};
   for_each(finest, own, [&](const Surfel& s) {
-    block.low = glm::min(block.low, glm::dvec3(s.position));
-    block.high = glm::max(block.high, glm::dvec3(s.position));
+    block.box.add(glm::dvec3(s.position));
     block.least_radius = std::min(block.least_radius, double{s.radius});
     block.greatest_radius = std::max(block.greatest_radius, double{s.radius});
   });
@@ -153,7 +148,7 @@ void bound_cones(std::span<const Surfel> finest, std::span<const Surfel> own, Bl
   for_each(finest, own,
            [&](const Surfel& s) { least = std::min(least, glm::dot(block.axis, glm::dvec3(s.normal))); });
   block.spread = std::acos(std::clamp(least, -1.0, 1.0));
-  const glm::dvec3 middle = block.middle();
+  const glm::dvec3 middle = block.box.middle();
   double lowest = 0, highest = 0;  // where planes cut the axis
   for_each(finest, own, [&](const Surfel& s) {
     const glm::dvec3 normal(s.normal), from_middle = glm::dvec3(s.position) - middle;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/bounds.h"
 #include "traces/scene.h"
 
 // Surfels in layered depth cubes (LDCs) of an octree (Ren 2002, section 6.2, after Pfister et al. 2000).
@@ -19,7 +20,7 @@ struct Block {
   std::uint32_t children = 0;
   std::uint32_t below = 0;  // surfels of the finest level that it stands for
   // Of its surfels and of all below it, so that what culls a block culls what it stands for. Object units.
-  glm::dvec3 low{}, high{};  // box of the centres
+  kernels::Box box;  // of the centres
   double least_radius = 0, greatest_radius = 0;
   // Normals lie within `spread` radians of `axis`. Along the axis the centres lie from `bottom` to `top`, as
   // seen from the middle of the box, and no further than `width` from it.
@@ -30,12 +31,6 @@ struct Block {
   // plane of every surfel. Nobody at behind + v sees the face of one where -v is within pi/2 - spread of the
   // axis, and from before + v all faces are seen where v is.
   glm::dvec3 behind{}, before{};
-
-  glm::dvec3 middle() const { return 0.5 * (low + high); }
-  // Of the box, 0 to 7; i and 7 - i are opposite.
-  glm::dvec3 corner(std::size_t i) const {
-    return {(i & 1 ? high : low).x, (i & 2 ? high : low).y, (i & 4 ? high : low).z};
-  }
 };
 
 struct TreeLevel {

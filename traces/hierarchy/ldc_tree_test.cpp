@@ -84,12 +84,12 @@ TEST(LdcTree, BlocksBoundWhatTheyStandFor) {
       surfels.insert(surfels.end(), own, own + block.count);
       for (const Surfel& s : surfels) {
         const glm::dvec3 p(s.position), n(s.normal);
-        EXPECT_TRUE(glm::all(glm::lessThanEqual(block.low, p)) &&
-                    glm::all(glm::greaterThanEqual(block.high, p)));
+        EXPECT_TRUE(glm::all(glm::lessThanEqual(block.box.low, p)) &&
+                    glm::all(glm::greaterThanEqual(block.box.high, p)));
         EXPECT_LE(block.least_radius, s.radius);
         EXPECT_GE(block.greatest_radius, s.radius);
         EXPECT_GE(glm::dot(n, block.axis), std::cos(block.spread) - kRounding);
-        const glm::dvec3 from_middle = p - block.middle();
+        const glm::dvec3 from_middle = p - block.box.middle();
         const double along = glm::dot(from_middle, block.axis);
         EXPECT_GE(along, block.bottom - kRounding);
         EXPECT_LE(along, block.top + kRounding);

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <unordered_map>
 
+#include "kernels/bounds.h"
 #include "model/stop.h"
 
 namespace splatscope::traces {
@@ -223,14 +225,13 @@ void add_limb(Body& body, std::span<const Vertebra> spine, const Flesh& flesh, i
 }
 
 Mesh surface_of(const Body& body, double cell) {
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  kernels::Box box;
   for (const Bone& bone : body) {
     const double reach = std::max(bone.radius_a, bone.radius_b) + bone.blend + 2 * cell;
-    low = glm::min(low, glm::min(bone.a, bone.b) - reach);
-    high = glm::max(high, glm::max(bone.a, bone.b) + reach);
+    for (const glm::dvec3& end : {bone.a, bone.b}) box.add(end, glm::dvec3(reach));
   }
   const double size = kBlock * cell;
-  const glm::ivec3 first(glm::floor(low / size)), last(glm::floor(high / size));
+  const glm::ivec3 first(glm::floor(box.low / size)), last(glm::floor(box.high / size));
   const glm::ivec3 count = last - first + 1;
   std::vector<Patch> patches(static_cast<std::size_t>(count.x * count.y * count.z));
   const double reach = 0.5 * std::sqrt(3.0) * (size + 2 * cell);

@@ -7,30 +7,13 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "kernels/bounds.h"
 #include "model/stop.h"
 #include "traces/models/sampler.h"
 #include "traces/neighbours.h"
 
 namespace splatscope::traces {
 namespace {
-
-struct Sphere {
-  glm::dvec3 center{};
-  double radius = 0;
-};
-
-Sphere bounding_sphere(const std::vector<MeshSample>& samples) {
-  glm::dvec3 low(samples.front().position), high = low;
-  for (const MeshSample& s : samples) {
-    low = glm::min(low, glm::dvec3(s.position));
-    high = glm::max(high, glm::dvec3(s.position));
-  }
-  Sphere sphere{0.5 * (low + high), 0};
-  for (const MeshSample& s : samples)
-    sphere.radius = std::max(sphere.radius, glm::distance(glm::dvec3(s.position), sphere.center));
-  if (!(sphere.radius > 0)) sphere.radius = 1;  // a single point
-  return sphere;
-}
 
 float light_on(const glm::vec3& normal, double shading) {
   const glm::dvec3 to_light = glm::normalize(glm::dvec3(-0.35, 0.8, 0.6));
@@ -66,8 +49,9 @@ ModelSurfels sample_model(const Model& model, const ModelOptions& options,
   const std::vector<MeshSample>& samples = sampled.points;
   std::vector<Surfel> surfels(samples.size());
   if (surfels.empty()) return {};
-  const Sphere sphere = bounding_sphere(samples);
-  const double unit = sphere.radius * options.pattern_scale;
+  const kernels::Sphere sphere = kernels::bounding_sphere(samples, [](const MeshSample&) { return 0.0; });
+  // A single point has no radius.
+  const double unit = (sphere.radius > 0 ? sphere.radius : 1) * options.pattern_scale;
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     stop_if_asked();
     const SurfacePoint point = surface_point(model.mesh, samples[i].triangle, samples[i].weights);

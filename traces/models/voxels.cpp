@@ -3,10 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
 
+#include "kernels/bounds.h"
 #include "model/stop.h"
 
 namespace splatscope::traces {
@@ -15,17 +15,13 @@ namespace {
 // A little larger than the mesh, and not the same on both sides: a face of a tidy model then does not lie
 // exactly between two cells, where it would fill both.
 Voxels root_of(const TriangleCorners& mesh) {
-  glm::dvec3 low(mesh.front()[0]), high = low;
-  for (const auto& corners : mesh) {
-    for (const glm::vec3& corner : corners) {
-      low = glm::min(low, glm::dvec3(corner));
-      high = glm::max(high, glm::dvec3(corner));
-    }
-  }
-  const double diagonal = glm::length(high - low);
+  kernels::Box box;
+  for (const auto& corners : mesh)
+    for (const glm::vec3& corner : corners) box.add(glm::dvec3(corner));
+  const double diagonal = glm::length(box.size());
   Voxels root;
-  root.low = low - 0.0010 * diagonal;
-  root.size = high + 0.0023 * diagonal - root.low;
+  root.low = box.low - 0.0010 * diagonal;
+  root.size = box.high + 0.0023 * diagonal - root.low;
   root.cells = {glm::uvec3(0)};
   root.triangles.resize(mesh.size());
   std::iota(root.triangles.begin(), root.triangles.end(), 0u);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <unordered_map>

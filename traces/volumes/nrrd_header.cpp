@@ -7,8 +7,6 @@
 #include <cmath>
 #include <istream>
 #include <map>
-#include <optional>
-#include <vector>
 
 #include "model/error.h"
 #include "traces/words.h"

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <glm/vec3.hpp>
 #include <iosfwd>
 #include <string>

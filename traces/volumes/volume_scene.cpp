@@ -7,10 +7,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "kernels/bounds.h"
 #include "kernels/reference/volume/procedural.h"
 #include "model/error.h"
 #include "model/stop.h"
@@ -187,15 +187,6 @@ void mirror(VolumeScene& scene) {
   };
 }
 
-struct Box {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
-
-  void add(const glm::dvec3& place, const glm::dvec3& reach) {
-    low = glm::min(low, place - reach);
-    high = glm::max(high, place + reach);
-  }
-};
-
 // What a voxel's cell reaches about its place: half of its edges.
 glm::dvec3 cell_reach(const VolumeScene& scene, const glm::ivec3& voxel) {
   const glm::dmat3 edges = kernels::cell_edges(scene.volume, voxel, scene.places);
@@ -203,9 +194,9 @@ glm::dvec3 cell_reach(const VolumeScene& scene, const glm::ivec3& voxel) {
 }
 
 // About the voxels' cells, not their places alone: the nearest layer must lie behind the near plane.
-Box box_of(const VolumeScene& scene) {
+kernels::Box box_of(const VolumeScene& scene) {
   const kernels::Volume& volume = scene.volume;
-  Box box;
+  kernels::Box box;
   if (scene.samples.empty() && !scene.places)
     return {volume.center() - 0.5 * volume.extent(), volume.center() + 0.5 * volume.extent()};
   for (const kernels::VolumeSample& sample : scene.samples)
@@ -223,17 +214,13 @@ Box box_of(const VolumeScene& scene) {
 }
 
 // The corners of the volume, as framing wants them.
-std::vector<Surfel> corners_of(const Box& box) {
+std::vector<Surfel> corners_of(const kernels::Box& box) {
   std::vector<Surfel> corners;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 place{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                           corner & 4 ? box.high.z : box.low.z};
-    corners.push_back({.position = place});
-  }
+  for (std::size_t i = 0; i < 8; ++i) corners.push_back({.position = box.corner(i)});
   return corners;
 }
 
-kernels::View view_of(SceneSettings& settings, const Box& box, std::string_view file) {
+kernels::View view_of(SceneSettings& settings, const kernels::Box& box, std::string_view file) {
   const Frame frame{settings.width, settings.height};
   frame_camera(corners_of(box), frame, settings.camera_given, settings.camera);
   check_camera(settings, file);
@@ -290,12 +277,12 @@ kernels::VolumeSplats VolumeScene::splats() const {
   // anyone could want.
   constexpr double kMostSheets = 4096;
   double edges = 0;
-  Box box;
+  kernels::Box box;
   for (const kernels::VolumeSample& sample : set) {
     edges += std::cbrt(sample.cell);
-    box.add(sample.position, glm::dvec3(0.0));
+    box.add(sample.position);
   }
-  const glm::dvec3 extent = set.empty() ? glm::dvec3(1.0) : box.high - box.low;
+  const glm::dvec3 extent = set.empty() ? glm::dvec3(1.0) : box.size();
   const double spacing = std::max({edges / static_cast<double>(std::max<std::size_t>(set.size(), 1)),
                                    std::max({extent.x, extent.y, extent.z}) / kMostSheets, 1e-30});
   kernels::VolumeSplats result = sample_splats(set, transfer, spacing, flattening, placed.layers);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"

@@ -59,13 +59,8 @@ glm::dmat3 cell_edges(const Volume& grid, const glm::ivec3& voxel, const VoxelPl
   return edges;
 }
 
-void LayerFacing::add(const glm::dvec3& normal) {
-  low = glm::min(low, normal);
-  high = glm::max(high, normal);
-}
-
 double LayerFacing::least_along(const glm::dvec3& direction) const {
-  const glm::dvec3 least = glm::min(direction * low, direction * high);
+  const glm::dvec3 least = glm::min(direction * normals.low, direction * normals.high);
   return least.x + least.y + least.z;
 }
 
@@ -89,7 +84,7 @@ PlacedSamples curvilinear_samples(const Volume& grid, double kernel_variance, co
           const glm::dmat3 normals = glm::inverse(glm::transpose(edges));
           sample.gradient = normals * (gradient(grid, voxel) * grid.spacing);
           for (int axis = 0; axis < 3; ++axis)
-            result.layers.facing[static_cast<std::size_t>(axis)].add(glm::normalize(normals[axis]));
+            result.layers.facing[static_cast<std::size_t>(axis)].normals.add(glm::normalize(normals[axis]));
         }
         result.samples.push_back(sample);
         result.layers.voxels.push_back(voxel);

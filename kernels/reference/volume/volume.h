@@ -5,8 +5,9 @@
 #include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <limits>
 #include <vector>
+
+#include "kernels/bounds.h"
 
 namespace splatscope::kernels {
 
@@ -59,9 +60,8 @@ glm::dmat3 cell_edges(const Volume& grid, const glm::ivec3& voxel, const VoxelPl
 // Which way the layers of voxels along one axis of such a grid face: bounds of the unit normals of its cells,
 // toward the next layer. Those of a rectilinear grid are all one.
 struct LayerFacing {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+  Box normals;
 
-  void add(const glm::dvec3& normal);
   // The least that any of them can have along a direction.
   double least_along(const glm::dvec3& direction) const;
 };

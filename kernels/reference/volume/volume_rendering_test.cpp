@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
 #include <optional>
