@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <string>
 
 #include "model/error.h"
 #include "model/isa/opcode.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include "model/error.h"
 #include "model/number/frame_value.h"

@@ -20,6 +20,7 @@
 #include "model/processes.h"
 #include "model/testing/scratch_folder.h"
 #include "studies/run_results.h"
+#include "studies/work_cache.h"
 #include "traces/output_files.h"
 #include "traces/trace_file.h"
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <bit>
-#include <memory>
 #include <vector>
 
 #include "sim/kernel/channel.h"
