@@ -222,7 +222,7 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
   add_observe_options(*command, options->observe);
   command->add_flag("--heat-maps", options->heat_maps,
                     "also write where in the frame the work was: overdraw.exr, depth_fails.exr, "
-                    "texel_fetches.exr, cycles_per_tile.exr");
+                    "texel_fetches.exr, and where cycles are simulated cycles_per_tile.exr");
   command->footer(
       "Example: splatscope run checkerboard-ewa-per-surfel --set vertex.units=4 --out out/four-units");
   command->callback([options, &invocation] { run(*options, invocation.quiet); });

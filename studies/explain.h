@@ -26,7 +26,8 @@ struct PixelStep {
   bool passed = false;         // the depth test
   bool writes_color = false;
   Vec4 diffuse{};  // as the pixel unit sees it
-  // Of the draw's texture, or of the surface that it samples: this pixel of it, as it would be in double.
+  // Of the draw's texture, or of the surface that it samples: as it would be in a frame of floats, and as
+  // the combiners take it.
   Vec4 texel{};
   Vec4 source{};  // out of the pixel program, made of these
   // Before and after the step: what the target holds in the machine's format, and what it would hold if

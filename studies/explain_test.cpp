@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "model/error.h"
@@ -90,6 +91,21 @@ TEST(Explain, DoubleIsWhatAFloatFrameNearlyHolds) {
   }
 }
 
+// What the pixel unit reads is shown before its combiners round it to 1/255: a colour of 12 bits here.
+TEST(Explain, TheCombinersDoNotRoundWhatIsShownOfTheirInputs) {
+  NumberFormats formats;
+  formats.color = ColorFormat::unorm12;
+  formats.combiner = CombinerFormat::signed9;
+  bool is_finer = false;
+  for (const PixelStep& step : explain_pixel(small_trace("ewa-per-surfel"), formats, 32, 24)) {
+    for (const float channel : step.diffuse) {
+      EXPECT_NEAR(4095 * channel, std::round(4095 * channel), 1e-3);
+      is_finer |= std::abs(255 * channel - std::round(255 * channel)) > 0.05f;
+    }
+  }
+  EXPECT_TRUE(is_finer);
+}
+
 Trace small_volume_trace() {
   const char* const text =
       "[volume]\ngenerator = \"head\"\nvoxels = [4, 4, 3]\n[frame]\nwidth = 16\nheight = 16\n";
@@ -152,6 +168,7 @@ TEST(Explain, SurfacesAreMadeFromEachOther) {
   trace.commands = {Clear{}, fill, copied(1, 2), copied(2, 1), copied(1, 0)};
   const std::vector<PixelStep> steps = explain_pixel(trace, {}, 8, 8);
   ASSERT_EQ(5u, steps.size());
+  EXPECT_EQ(std::string::npos, describe(trace, {}, {steps[1]}).find("texel")) << "a fill has none";
   const double scale[] = {0, 1, 0.5, 0.25, 0.125};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     EXPECT_NEAR(0.8 * scale[i], steps[i].after[0], 1.5 / 255) << i;

@@ -103,7 +103,7 @@ std::string add_plot(Report& report, const Plot& plot) {
     report.drawing(plot.title, svg);
     return svg;
   } catch (const std::runtime_error& error) {  // no reason to lose what may have taken hours
-    report.paragraph(fmt::format("No curves: {}.", error.what()));
+    report.paragraph(fmt::format("No curves of \"{}\": {}.", plot.title, error.what()));
     return "";
   }
 }

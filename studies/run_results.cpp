@@ -73,7 +73,7 @@ constexpr Total kTotals[] = {
      &RenderCounters::triangles_not_finite},
     {"triangles_back_facing", "triangles", "dropped by the cull mode",
      &RenderCounters::triangles_back_facing},
-    {"triangles_clipped", "triangles", "that clipping made more than one of",
+    {"triangles_clipped", "triangles", "that clipping made more than one of, not culled",
      &RenderCounters::triangles_clipped},
     {"quads", "quads", "2x2 pixels with coverage", &RenderCounters::quads},
     {"fragments", "pixels", "covered, each triangle by itself", &RenderCounters::fragments},

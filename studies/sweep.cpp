@@ -106,14 +106,15 @@ SweptParameter swept_parameter(std::string_view text) {
     for (std::size_t end = equals; end < text.size();) {
       const std::size_t begin = end + 1;
       end = std::min(text.find(',', begin), text.size());
-      parameter.values.push_back(unquoted(text.substr(begin, end - begin)));
+      parameter.values.emplace_back(text.substr(begin, end - begin));
     }
   }
   if (parameter.key.empty() || equals + 1 == text.size())
     throw UserError("--sweep", 0, fmt::format("\"{}\", expected KEY=VALUE,VALUE,...", text));
-  std::set<std::string_view> given;
+  std::set<std::string> given;
   for (const std::string& value : parameter.values) {
-    if (!value.empty() && !given.insert(value).second)  // an empty one is no value, and refused as such
+    if (!value.empty() &&
+        !given.insert(unquoted(value)).second)  // an empty one is no value, and refused as such
       throw UserError("--sweep", 0,
                       fmt::format("\"{}\" has {} twice, expected each value once", text, value));
   }
@@ -146,6 +147,8 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
   Sweep sweep;
   sweep.points = combine(parameters);
   const std::vector<Group> groups = group(machine, sweep.points);
+  for (SweepPoint& point : sweep.points)  // checked as they were given
+    for (auto& [key, value] : point.settings) value = unquoted(value);
   const auto opened = open_input(scene_or_trace);
   std::optional<WorkCache> cache;
   if (options.cache) cache.emplace(*options.cache);

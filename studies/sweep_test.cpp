@@ -168,11 +168,15 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
   EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1"}}}, Fidelity::functional), UserError);
 }
 
-TEST(SweptParameters, MayStandInQuotes) {
-  EXPECT_EQ(swept_parameter("numbers.frame=half,\"unorm8\"").values,
-            (std::vector<std::string>{"half", "unorm8"}));
+TEST_F(Sweeps, ValuesMayStandInQuotes) {
+  const auto settings_of = [&](const std::string& swept) {
+    return run_sweep(file, machine, {swept_parameter(swept)}, Fidelity::throughput).points[0].settings;
+  };
+  EXPECT_EQ(settings_of("numbers.frame=\"half\""), settings_of("numbers.frame=half"));
+  EXPECT_EQ(splatscope::error_of([&] { settings_of("vertex.units=\"1\""); }),
+            "--sweep: vertex.units has the wrong type, expected an integer, 1 to 16");
   EXPECT_EQ(splatscope::error_of([] { swept_parameter("numbers.frame=half,\"half\""); }),
-            "--sweep: \"numbers.frame=half,\"half\"\" has half twice, expected each value once");
+            "--sweep: \"numbers.frame=half,\"half\"\" has \"half\" twice, expected each value once");
 }
 
 TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {

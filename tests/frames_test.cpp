@@ -71,7 +71,7 @@ TEST(Frames, FloatPictureIsTheReference) {
 }
 
 // Normalised per pixel, what is left is the rounding of some nine splats to steps of 1/255 each, divided by
-// their weight of about 0.7: 1.2 steps in the mean square, 46 dB. Per surfel, weights that are the same in
+// their weight of about 0.7: 1.2 steps (root mean square), 46 dB. Per surfel, weights that are the same in
 // all of a splat ripple between the centres.
 TEST(Frames, EightBitPicturesComeNearTheReference) {
   const kernels::SplatSums reference =

@@ -105,7 +105,7 @@ namespace {
 
 void expect_writable(const fs::path& folder) {
   try {
-    const OutputFile probe(folder / "probe");
+    const OutputFile probe(folder / fmt::format(".probe-{}", ::getpid()));
   } catch (const UserError&) {  // which would name the probe
     throw UserError(folder.string(), 0, "cannot be written into, expected a writable place for the output");
   }

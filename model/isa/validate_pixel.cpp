@@ -290,8 +290,8 @@ class PixelValidator {
           reject(program_, instruction, "texld reads r# in the second phase only, written in the first");
         if (instruction.opcode == texld && (read & ~before_phase_[source.index]) != 0)
           reject(program_, instruction,
-                 fmt::format("texld reads r{0} as the first phase left it: r{0} was not written there, or is "
-                             "written again before",
+                 fmt::format("texld reads r{0} as the first phase left it: not all that is read of it was "
+                             "written there, or it is written again before",
                              source.index));
         check_temporary(instruction, source.index, read);
       } else if (source.file == RegisterFile::texture && !version_1_4_) {

@@ -130,9 +130,10 @@ TEST(Validate, BothHalvesOfAPairTakeSlots) {
 }
 
 TEST(Validate, DependentReadsAreOfTheFirstPhase) {
-  EXPECT_EQ(error_of("ps_1_4\ntexcrd r0.rgb, t0\nphase\ntexld r0, t1\ntexld r1, r0\nmov r0, r1\n"),
-            "p:5:1: texld reads r0 as the first phase left it: r0 was not written there, or is written again "
-            "before");
+  EXPECT_EQ(
+      error_of("ps_1_4\ntexcrd r0.rgb, t0\nphase\ntexld r0, t1\ntexld r1, r0\nmov r0, r1\n"),
+      "p:5:1: texld reads r0 as the first phase left it: not all that is read of it was written there, or "
+      "it is written again before");
   EXPECT_EQ(error_of("ps_1_4\ntexcrd r0.rgb, t0\nphase\ntexld r0, r0\nmov r0, r0\n"), "no error");
 }
 

@@ -75,8 +75,8 @@ Step PrimitiveAssembly::advance(Cycle now) {
 
 std::vector<Statistic> PrimitiveAssembly::statistics(Cycle) const {
   return {{"assembled", "triangles", "passed to setup", assembled_},
-          {"rejected", "triangles", "outside, behind or not finite", rejected_},
-          {"clipped", "triangles", "that clipping made more than one of", clipped_}};
+          {"rejected", "triangles", "outside, behind, not finite or culled", rejected_},
+          {"clipped", "triangles", "that clipping made more than one of, not culled", clipped_}};
 }
 
 std::string PrimitiveAssembly::state() const {
