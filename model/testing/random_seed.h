@@ -13,7 +13,7 @@ inline unsigned random_seed() {
   constexpr unsigned kMost = 99999;  // of gtest's flag
   const int given = GTEST_FLAG_GET(random_seed);
   const unsigned seed = given != 0 ? static_cast<unsigned>(given) : 1 + std::random_device{}() % kMost;
-  std::cout << "--gtest_random_seed=" << seed << std::endl;
+  std::cout << "--gtest_random_seed=" << seed << '\n' << std::flush;
   return seed;
 }
 
