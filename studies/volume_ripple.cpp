@@ -17,7 +17,7 @@ constexpr double kPitches[] = {0.53, 1.03, 1.57, 2.11, 4.3, 9.7};  // no whole n
 }  // namespace
 
 double layer_ripple(double cutoff, double pitch) {
-  constexpr int kFrame = 48;
+  constexpr int kFrame = 256;
   constexpr double kOpacity = 0.5;
   // Wider than the picture by more than any splat reaches.
   const int voxels = static_cast<int>(1.5 * kFrame / pitch + 8 * std::sqrt(1 + 1 / (pitch * pitch))) + 2;

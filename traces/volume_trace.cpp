@@ -348,6 +348,15 @@ class Recorder {
   VolumeTrace result_;
 };
 
+bool has_finite_constants(const Trace& trace) {
+  return std::ranges::all_of(trace.commands, [](const Command& command) {
+    const auto* draw = std::get_if<Draw>(&command);
+    return !draw || std::ranges::all_of(draw->constants, [](const Vec4& constant) {
+      return std::ranges::all_of(constant, [](float c) { return std::isfinite(c); });
+    });
+  });
+}
+
 }  // namespace
 
 VolumeTrace volume_trace(const kernels::View& view, const kernels::VolumeSplats& splats,
@@ -361,9 +370,15 @@ VolumeTrace record(const VolumeScene& scene) {
         scene.file, scene.prefilter_line,
         "volume.prefilter is not \"ewa\", expected it, the only filter of the machine's programs");
   }
-  return volume_trace(
+  VolumeTrace recorded = volume_trace(
       scene.view, scene.splats(),
       {.cutoff = scene.settings.cutoff, .light = scene.settings.light, .background = scene.background});
+  if (!has_finite_constants(recorded.trace)) {
+    throw UserError(scene.file, 0,
+                    "the machine's programs square voxels of this size beyond 32 bits, expected another unit "
+                    "of length");
+  }
+  return recorded;
 }
 
 std::string describe(const VolumeCounts& counts) {

@@ -24,14 +24,13 @@ struct FastSurfels {
 struct FastCamera {
   explicit FastCamera(const View& view);
   float rows[3][4];  // object to camera
-  float eta, center_x, center_y, near_plane;
+  float eta, center_x, center_y, near_plane, far_plane;
   float width, height;
 };
 
 // With the settings.
 struct FastView : FastCamera {
   using FastCamera::FastCamera;
-  float far_plane = 0;
   float low_pass = 0;  // variance of the low-pass filter, pixels: 1, or 0 without
   float reach = 0;     // sqrt(2c)
   bool cull_back_faces = false;

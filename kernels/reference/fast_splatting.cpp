@@ -10,6 +10,7 @@ FastCamera::FastCamera(const View& view)
       center_x(static_cast<float>(view.center().x)),
       center_y(static_cast<float>(view.center().y)),
       near_plane(static_cast<float>(view.near_plane)),
+      far_plane(static_cast<float>(view.far_plane)),
       width(static_cast<float>(view.width)),
       height(static_cast<float>(view.height)) {
   for (int row = 0; row < 3; ++row) {
@@ -23,7 +24,6 @@ namespace {
 
 FastView fast_view(const View& view, const FastSettings& settings) {
   FastView fast(view);
-  fast.far_plane = static_cast<float>(view.far_plane);
   fast.low_pass = settings.prefilter ? 1.0f : 0.0f;
   fast.reach = static_cast<float>(std::sqrt(2.0 * settings.cutoff));
   fast.cull_back_faces = settings.cull_back_faces;

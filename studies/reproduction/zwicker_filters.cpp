@@ -57,6 +57,7 @@ AffineError affine_error(double spread, double degrees) {
   kernels::View view;
   view.eta = 1e6;  // fine pixels, without a low-pass
   view.width = view.height = 2;
+  view.far_plane = 2;
   const glm::dmat3 variance(spread * spread);
   const auto print = footprint(view, Projection::perspective, VolumePrefilter::none, camera, variance);
   if (!print) return {spread, NAN, NAN};

@@ -52,7 +52,7 @@ TEST_F(NrrdFile, ReadsEachTypeInEitherOrderOfBytes) {
   EXPECT_EQ(bytes.center(), glm::dvec3(0));
   EXPECT_EQ(bytes.values, (std::vector<float>{1, 2, 3, 4, 5, 255}));
   const kernels::Volume shorts =
-      read_nrrd(write("b.nrrd", header("short", "2 1 1", "space directions: (0,2,0) (3,0,4) (1,0,0)\n") +
+      read_nrrd(write("b.nrrd", header("short", "2 1 1", "space directions: (0,2,0) (3,0,4) (0.8,0,-0.6)\n") +
                                     bytes_of_values<std::int16_t>({-1024, 3033})));
   EXPECT_EQ(shorts.values, (std::vector<float>{-1024, 3033}));
   EXPECT_EQ(shorts.spacing, glm::dvec3(2, 5, 1));
@@ -89,6 +89,13 @@ TEST_F(NrrdFile, FieldsAreReadInAnySpelling) {
             "a.nrrd:10: \"datafile\" for the second time, expected it once, as in line 9");
 }
 
+// As other readers of the format take them.
+TEST_F(NrrdFile, WordsAreReadInLargeLetters) {
+  const std::string header =
+      "NRRD0004\r\ntype: UINT16\r\ndimension: 3\r\nsizes: 1 1 1\r\nencoding: RAW\r\nendian: Big\r\n\r\n";
+  EXPECT_EQ(read_nrrd(write("a.nrrd", header + std::string("\1\2", 2))).values, std::vector<float>{258});
+}
+
 TEST_F(NrrdFile, NamesTheLineOfWhatIsWrong) {
   EXPECT_EQ(error_of("PLY\n"), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
   EXPECT_EQ(error_of(""), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
@@ -109,6 +116,13 @@ TEST_F(NrrdFile, NamesTheLineOfWhatIsWrong) {
             "a.nrrd:9: a spacing of \"-1\", expected a number from 1e-9 to 1e9");
   EXPECT_EQ(error_of(header("uint8", "1 1 1", "sizes: 1 1 1\n")),
             "a.nrrd:9: \"sizes\" for the second time, expected it once, as in line 5");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "space directions: (1,0,0) (0.8,0.6,0) (0,0,1)\n")),
+            "a.nrrd:9: skewed space directions, expected axes at right angles");
+  EXPECT_EQ(
+      error_of(header("uint8", "1 1 1", "spacings: 1 1 1\nspace directions: (2,0,0) (0,1,0) (0,0,1)\n")),
+      "a.nrrd:11: spacings beside space directions, expected one of them");
+  EXPECT_EQ(error_of("NRRD0004\n  \n"),
+            "a.nrrd:2: a line of blanks, expected an empty line at the end of the header");
   EXPECT_EQ(error_of("NRRD0004\ntype: uint8\nencoding: gzip\n"),
             "a.nrrd:3: encoding is \"gzip\", expected raw (unu save -e raw converts)");
   EXPECT_EQ(error_of("NRRD0004\ntype: uint8\n\n"),

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <istream>
 #include <map>
 
@@ -50,6 +52,7 @@ class Reader {
     if (!next_line() || !line_.starts_with("NRRD000"))
       fail("the first line is not \"NRRD000N\"", "a NRRD file");
     while (next_line() && !line_.empty()) {
+      if (trimmed(line_).empty()) fail("a line of blanks", "an empty line at the end of the header");
       if (line_[0] == '#') continue;
       const std::size_t colon = line_.find(':');
       if (colon == line_.npos) fail("a line without a colon", "\"field: value\"");
@@ -70,11 +73,15 @@ class Reader {
   [[noreturn]] void fail(std::string_view what, std::string_view expected) const {
     throw UserError(file_, number_, fmt::format("{}, expected {}", what, expected));
   }
+  static std::string in_small_letters(std::string_view text) {
+    std::string small(text);
+    std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+    return small;
+  }
   // Fields are written in small letters or large, some with a blank or without.
   static std::string identifier(std::string_view field) {
-    std::string name(field);
+    std::string name = in_small_letters(field);
     std::erase(name, ' ');
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
     return name;
   }
   static std::string shown(std::string_view text) {
@@ -92,7 +99,7 @@ class Reader {
     for (int c; (c = in_.get()) != std::istream::traits_type::eof();) {
       ++header_.data_start;
       if (c == '\n') {
-        line_ = std::string(trimmed(line_));
+        if (line_.ends_with('\r')) line_.pop_back();
         return true;
       }
       if (line_.size() == kMostCharacters) {
@@ -100,7 +107,6 @@ class Reader {
       }
       line_ += static_cast<char>(c);
     }
-    line_ = std::string(trimmed(line_));
     return !line_.empty();
   }
 
@@ -119,12 +125,13 @@ class Reader {
     } else if (name == "spacedirections") {
       read_directions(value);
     } else if (name == "encoding") {
-      if (value != "raw")
+      if (in_small_letters(value) != "raw")
         fail(fmt::format("encoding is \"{}\"", shown(value)), "raw (unu save -e raw converts)");
     } else if (name == "endian") {
-      if (value != "big" && value != "little")
+      const std::string order = in_small_letters(value);
+      if (order != "big" && order != "little")
         fail(fmt::format("endian is \"{}\"", shown(value)), "big or little");
-      header_.big_endian = value == "big";
+      header_.big_endian = order == "big";
     } else if (name == "datafile") {
       if (value.empty() || value.starts_with("LIST") || value.find('%') != value.npos) {
         fail(fmt::format("data file is \"{}\"", shown(value)), "the name of one file");
@@ -142,7 +149,8 @@ class Reader {
 
   void read_type(std::string_view value) {
     for (const TypeNames& type : kTypes) {
-      if (value.find('|') == value.npos && type.names.find(fmt::format("|{}|", value)) != type.names.npos) {
+      if (value.find('|') == value.npos &&
+          type.names.find(fmt::format("|{}|", in_small_letters(value))) != type.names.npos) {
         header_.type = type.type;
         return;
       }
@@ -187,26 +195,36 @@ class Reader {
       header_.spacing[axis] = spacing(words[static_cast<std::size_t>(axis)]);
   }
 
-  // "(1,0,0) (0,1,0) (0,0,2)": their lengths; where the volume lies in the world is not kept.
+  // "(1,0,0) (0,1,0) (0,0,2)": their lengths; how the volume lies in the world is not kept.
   void read_directions(std::string_view value) {
     const auto words = words_of(value, " \t,()");
     if (words.size() != 9)
       fail(fmt::format("{} numbers in space directions", words.size()), "three vectors of three");
+    glm::dmat3 directions;
     for (int axis = 0; axis < 3; ++axis) {
-      double square = 0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::string_view word = words[3 * static_cast<std::size_t>(axis) + i];
+      for (int i = 0; i < 3; ++i) {
+        const std::string_view word = words[static_cast<std::size_t>(3 * axis + i)];
         const auto entry = number_of<double>(word);
         if (!entry || !(std::abs(*entry) <= 1e9))
           fail(fmt::format("\"{}\" in space directions", shown(word)), "a number");
-        square += *entry * *entry;
+        directions[axis][i] = *entry;
       }
-      if (!(square >= 1e-18)) fail("a space direction of length 0", "a length from 1e-9 to 1e9");
-      header_.spacing[axis] = std::sqrt(square);
+      header_.spacing[axis] = glm::length(directions[axis]);
+      if (!(header_.spacing[axis] >= 1e-9))
+        fail("a space direction of length 0", "a length from 1e-9 to 1e9");
+    }
+    constexpr double kLeastSkew = 1e-3;  // as a cosine: what files round their directions to is less
+    for (int axis = 0; axis < 3; ++axis) {
+      const int next = (axis + 1) % 3;
+      const double cosine =
+          glm::dot(directions[axis], directions[next]) / (header_.spacing[axis] * header_.spacing[next]);
+      if (!(std::abs(cosine) < kLeastSkew)) fail("skewed space directions", "axes at right angles");
     }
   }
 
   void finish() const {
+    if (lines_.contains("spacings") && lines_.contains("spacedirections"))
+      fail("spacings beside space directions", "one of them");
     const bool placed = lines_.contains("axismins") || lines_.contains("axismaxs");
     if (header_.components == 1 && placed && !lines_.contains("spacings") &&
         !lines_.contains("spacedirections"))

@@ -213,6 +213,23 @@ kernels::Box box_of(const VolumeScene& scene) {
   return box;
 }
 
+// Places in the world can be large and close to one another, more than floats can tell apart: they count from
+// the middle of them all, and the camera with them. Returns the box that they are in then; a regular grid is
+// centred as it is.
+kernels::Box centered(const kernels::Box& box, VolumeScene& scene, SceneSettings& settings) {
+  if (scene.samples.empty() && !scene.places) return box;
+  const glm::dvec3 middle = box.middle();
+  for (kernels::VolumeSample& sample : scene.samples) sample.position -= middle;
+  if (scene.places) {
+    scene.places = [places = std::move(scene.places), middle](const glm::ivec3& voxel) {
+      return places(voxel) - middle;
+    };
+  }
+  if (settings.camera_given.eye) settings.camera.eye -= middle;
+  if (settings.camera_given.target) settings.camera.target -= middle;
+  return {box.low - middle, box.high - middle};
+}
+
 // The corners of the volume, as framing wants them.
 std::vector<Surfel> corners_of(const kernels::Box& box) {
   std::vector<Surfel> corners;
@@ -259,7 +276,7 @@ VolumeScene parse_volume_scene(std::string_view text, const std::filesystem::pat
   scene.kernel_variance = keys.kernel_variance;
   scene.flattening = {
       .low = keys.surface_low, .high = keys.surface_high, .s = keys.surface_flatness, .normal = {}};
-  scene.view = view_of(settings, box_of(scene), file.string());
+  scene.view = view_of(settings, centered(box_of(scene), scene, settings), file.string());
   scene.settings = keys.rendering;
   scene.background = keys.background;
   return scene;

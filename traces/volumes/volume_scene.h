@@ -16,7 +16,8 @@
 
 namespace splatscope::traces {
 
-// What a user wants drawn of a volume: a scene file with [volume].
+// What a user wants drawn of a volume: a scene file with [volume]. Places, samples and the view count from
+// the middle of the volume.
 struct VolumeScene {
   std::string name;                            // the scene file's name without folder and ending
   std::string file;                            // for messages

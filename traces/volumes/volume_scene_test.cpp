@@ -114,14 +114,14 @@ class VolumeKinds : public testing::Test {
     folder_.file("values.nrrd", values);
   }
 
-  VolumeScene scene(const std::string& keys) const {
+  VolumeScene scene(const std::string& keys, const std::string& eye = "[4, 5, 12]",
+                    const std::string& target = "[0, 0, 0]") const {
     return parse_volume_scene(
         "[volume]\n" + keys +
             "transfer = [{ value = 10, opacity = 0, color = [1, 0, 0] }, { value = 50, opacity = 0.5, color "
             "= [0, 1, 1] "
-            "}]\nambient = 1\ndiffuse = 0\nspecular = 0\n[frame]\nwidth = 40\nheight = 40\n[camera]\neye = "
-            "[4, 5, "
-            "12]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov_y_degrees = 35\nnear = 1\nfar = 40\n",
+            "}]\nambient = 1\ndiffuse = 0\nspecular = 0\n[frame]\nwidth = 40\nheight = 40\n[camera]\neye = " +
+            eye + "\ntarget = " + target + "\nup = [0, 1, 0]\nfov_y_degrees = 35\nnear = 1\nfar = 40\n",
         folder_ / "s.toml");
   }
   std::string error(const std::string& keys) const {
@@ -158,11 +158,10 @@ TEST_F(VolumeKinds, EachKindCanBeMirrored) {
        {"file = \"values.nrrd\"\n", "file = \"values.nrrd\"\nx = [-2, -1, 0.5, 1, 3]\n",
         "file = \"values.nrrd\"\npositions = \"places.nrrd\"\n", "samples = \"samples.ply\"\n"}) {
     const VolumeScene plain = scene(keys);
-    VolumeScene mirrored = scene("mirror = true\n" + keys);
-    mirrored.view = kernels::look_at({-4, 5, 12}, {}, {0, 1, 0}, 35, 40, 40, 1, 40);
+    const VolumeScene mirrored = scene("mirror = true\n" + keys, "[-4, 5, 12]");
     const auto of_plain = volume_picture(plain.view, plain.splats(), plain.settings).pixels;
     const auto of_mirrored = volume_picture(mirrored.view, mirrored.splats(), mirrored.settings).pixels;
-    const double middle = plain.view.window(plain.view.camera_space({})).x;
+    const double middle = plain.view.center().x;                      // where both look
     const int twice = static_cast<int>(std::lround(2 * middle - 1));  // a pixel's centre is half a step on
     double worst = 0, brightest = 0;
     for (int y = 0; y < 40; ++y) {
@@ -176,6 +175,42 @@ TEST_F(VolumeKinds, EachKindCanBeMirrored) {
     EXPECT_GT(brightest, 0.5) << keys;
     EXPECT_LT(worst, 1e-6) << keys;  // weights are floats
   }
+}
+
+// Moved by 2^22 with its camera, where floats are half a unit apart, it is the same picture.
+TEST_F(VolumeKinds, WhereAVolumeLiesDoesNotMatter) {
+  const auto picture = [&](const std::string& x, const std::string& eye, const std::string& target) {
+    const VolumeScene placed = scene("file = \"values.nrrd\"\nx = " + x + "\n", eye, target);
+    return volume_picture(placed.view, placed.splats(), placed.settings).pixels;
+  };
+  const auto near = picture("[-2, -1, 0.25, 1, 3]", "[4, 5, 12]", "[0, 0, 0]");
+  EXPECT_GT(std::ranges::max(near, {}, [](const glm::dvec4& pixel) { return pixel.w; }).w, 0.5);
+  EXPECT_EQ(near, picture("[4194302, 4194303, 4194304.25, 4194305, 4194307]", "[4194308, 5, 12]",
+                          "[4194304, 0, 0]"));
+}
+
+TEST_F(VolumeKinds, VoxelsBeyondTheMachinesNumbersAreAUsersError) {
+  const auto recorded = [&](const std::string& spacing) {
+    folder_.file("large.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: " + spacing +
+                                   "\nencoding: raw\n\n" + std::string(8, 'a'));
+    const std::string text = "[volume]\nfile = \"large.nrrd\"\n[frame]\nwidth = 16\nheight = 16\n";
+    return splatscope::error_of([&] { record(parse_volume_scene(text, folder_ / "large.toml")); });
+  };
+  EXPECT_EQ(recorded("1e6 1e6 1e6"), "no error");
+  EXPECT_EQ(recorded("1e9 1e9 1e9"), (folder_ / "large.toml").string() +
+                                         ": the machine's programs square voxels of this size beyond 32 "
+                                         "bits, expected another unit of length");
+}
+
+TEST_F(VolumeKinds, NothingIsDrawnBeyondTheFarPlane) {
+  VolumeScene all = scene("file = \"values.nrrd\"\n");
+  all.view.far_plane = all.view.camera_space(glm::dvec3(0)).z;  // through the middle of three layers
+  const kernels::VolumeSplats splats = all.splats();
+  const auto beyond = static_cast<std::size_t>(std::ranges::count_if(splats.splats, [&](const auto& splat) {
+    return all.view.camera_space(glm::dvec3(splat.position)).z > all.view.far_plane;
+  }));
+  EXPECT_GT(beyond, 10u);
+  EXPECT_EQ(record(all).left_out, beyond);
 }
 
 // Twice as far apart along x, the voxels reach twice as far.

@@ -198,7 +198,8 @@ HWY_INLINE void project_batch(const FastVolumeView& view, const SpecularTable& t
     hn::Store(values[i], F{}, batch.values[i]);
     sum = hn::Add(sum, hn::Mul(values[i], zero));
   }
-  const M keep = hn::And(hn::Gt(t.z, set(view.near_plane)), hn::Eq(sum, zero));
+  const M within = hn::And(hn::Gt(t.z, set(view.near_plane)), hn::Le(t.z, set(view.far_plane)));
+  const M keep = hn::And(within, hn::Eq(sum, zero));
   hn::Store(hn::IfThenElseZero(keep, one), F{}, batch.keep);
   const V reach_x = hn::Mul(set(view.reach), hn::Sqrt(v.xx)),
           reach_y = hn::Mul(set(view.reach), hn::Sqrt(v.yy));

@@ -62,7 +62,7 @@ glm::dmat2 prefiltered(VolumePrefilter prefilter, const glm::dmat2& variance) {
 
 std::optional<Footprint> footprint(const View& view, Projection projection, VolumePrefilter prefilter,
                                    const glm::dvec3& camera, const glm::dmat3& camera_variance) {
-  if (!(camera.z > view.near_plane)) return std::nullopt;
+  if (!(camera.z > view.near_plane && camera.z <= view.far_plane)) return std::nullopt;
   const RaySpace ray = ray_space(view, projection, camera);
   Footprint result{.center = glm::dvec2(ray.position), .distance = ray.position.z};
   result.variance = prefiltered(prefilter, projected_variance(ray, camera_variance));

@@ -27,7 +27,7 @@ struct VolumeSettings {
   Projection projection = Projection::perspective;
   VolumePrefilter prefilter = VolumePrefilter::ewa;
   // A splat ends at the radial index r = cutoff (section 7.1). At 11 a layer of constant opacity is constant
-  // to 0.3%, at 4 to 7% (study volume-ripple).
+  // to 0.3%, at 4 to 8% (study volume-ripple).
   double cutoff = 11;
   PhongLight light{};
   // Of the sheets: 0 x, 1 y, 2 z of object space; else the one most parallel to the line of sight.
