@@ -61,7 +61,7 @@ std::span<const SceneKey> volume_keys() {
                    {"ewa", "swan", "none"},
                    0}},
       {"volume", "cutoff", "",
-       "radial index at which a splat ends: 4 in the paper, where layers ripple by 7%",
+       "radial index at which a splat ends: 4 in the paper, where layers ripple by 8%",
        RealValue{[](S& s) -> double& { return s.volume.rendering.cutoff; }, 11, 0.5, 50}},
       {"volume", "ambient", "", "part of a voxel's colour that has no direction",
        RealValue{[](S& s) -> double& { return light(s).ambient; }, 0.3, 0, 1}},
