@@ -40,7 +40,7 @@ constexpr Corner kBetweenCentres[] = {at(2.6f, 12.6f, 0.5f), at(2.9f, 12.6f, 0.5
 constexpr Corner kOutside[] = {at(17, 0, 0.5f), at(20, 0, 0.5f), at(17, 8, 0.5f)};
 constexpr Corner kBehind[] = {at(0, 0, -0.5f), at(8, 0, -0.5f), at(0, 8, -0.5f)};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr Corner kNotFinite[] = {at(0, 0, 0.5f), at(8, kNan, 0.5f), at(0, 8, 0.5f)};
+const Corner kNotFinite[] = {at(0, 0, 0.5f), at(8, kNan, 0.5f), at(0, 8, 0.5f)};
 constexpr Corner kTurned[] = {at(0, 0, 0.1f), at(0, 8, 0.1f), at(8, 0, 0.1f)};
 constexpr std::uint32_t kTriangles = 9;
 
