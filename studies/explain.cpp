@@ -55,7 +55,7 @@ class PixelHistory {
     if (step.writes_color) {
       catch_up();
       step.source = probe(wide_, triangle, draw.pixel_program);
-      step.diffuse = probe(inputs_, without_source(triangle), diffuse_program_);
+      step.diffuse = probe(inputs_, triangle, diffuse_program_);
       if (draw.texture) step.texel = probe(inputs_, triangle, texel_program_);
       if (draw.source) step.texel = probe(wide_, triangle, texel_program_);
     }
@@ -84,11 +84,6 @@ class PixelHistory {
   static NumberFormats without_rounding(NumberFormats formats) {
     formats.combiner = CombinerFormat::unbounded;
     return with_float_frame(formats);
-  }
-
-  static Draw without_source(Draw draw) {
-    draw.source.reset();
-    return draw;
   }
 
   std::uint32_t add_program(const char* text) {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "model/shell_word.h"
 #include "traces/output_files.h"
 
 namespace splatscope::studies {
@@ -22,12 +23,6 @@ std::string quoted(const std::string& text) {
     if (c == '\'') result += '\'';
     result += c == '\n' ? ' ' : c;
   }
-  return result + "'";
-}
-
-std::string quoted_for_shell(const std::string& word) {
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
   return result + "'";
 }
 
@@ -81,8 +76,8 @@ std::string svg_of(const Plot& plot) {
       errors(folder / "splatscope.gnuplot-errors");
   if (!(std::ofstream(script.temporary()) << script_of(plot)).flush())
     throw std::runtime_error(script.temporary().string() + ": writing failed (is the disk full?)");
-  std::FILE* pipe = ::popen(fmt::format("gnuplot -d {} 2>{}", quoted_for_shell(script.temporary().string()),
-                                        quoted_for_shell(errors.temporary().string()))
+  std::FILE* pipe = ::popen(fmt::format("gnuplot -d {} 2>{}", shell_word(script.temporary().string()),
+                                        shell_word(errors.temporary().string()))
                                 .c_str(),
                             "r");
   if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");

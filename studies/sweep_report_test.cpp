@@ -82,6 +82,7 @@ TEST(SweepReport, ThePageDoesWithoutAPlotter) {
   const std::string html = report_of(two_by_two(), machine::load("geforce4-ti4400"), Fidelity::cycle).html();
   ::setenv("PATH", path.c_str(), 1);
   EXPECT_NE(html.find("No curves of "), std::string::npos);
+  EXPECT_NE(html.find("gnuplot failed"), std::string::npos);
   EXPECT_NE(html.find("vertex0 (50 % busy)"), std::string::npos);
 }
 

@@ -30,12 +30,14 @@ inline std::map<std::string, std::string> texts_in(const std::filesystem::path& 
   return texts;
 }
 
-// The same of a command line that is refused before any work: all files are as they were.
-inline void expect_refused(const ScratchFolder& folder, const std::vector<std::string>& arguments,
-                           const std::string& part) {
+// The same of a command line that is refused before any work: all files are as they were. What it said.
+inline std::string expect_refused(const ScratchFolder& folder, const std::vector<std::string>& arguments,
+                                  const std::string& part) {
   const auto before = texts_in(folder.path());
-  expect_refused(run_program(arguments, folder.path()), part);
+  const Outcome outcome = run_program(arguments, folder.path());
+  expect_refused(outcome, part);
   EXPECT_EQ(texts_in(folder.path()), before);
+  return outcome.error;
 }
 
 inline constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 1 2\n";

@@ -112,7 +112,7 @@ TEST(VolumeCommand, RunsAVolumeOnTheMachine) {
   EXPECT_GT(results["reference"]["psnr_decibels"], 36);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/report.html"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/reference.png"));
-  expect_refused(run_program({"run", "head.toml", "--reference", "perspective"}, folder.path()),
+  expect_refused(folder, {"run", "head.toml", "--reference", "perspective"},
                  "perspective is a map of surfels, expected affine for a volume");
   // What is recorded draws the same.
   const Outcome recorded = run_program({"record", "head.toml", "-o", "head.trace"}, folder.path());

@@ -43,6 +43,14 @@ void refuse_dash(const fs::path& path) {
                     "is not standard output here, expected a file's or folder's name (./- for one called -)");
 }
 
+void expect_writable(const fs::path& folder) {
+  try {
+    const OutputFile probe(folder / fmt::format(".probe-{}", ::getpid()));
+  } catch (const UserError&) {  // which would name the probe
+    throw UserError(folder.string(), 0, "cannot be written into, expected a writable place for the output");
+  }
+}
+
 }  // namespace
 
 void expect_apart(const std::vector<NamedFile>& written, const std::vector<NamedFile>& others) {
@@ -100,18 +108,6 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
 void write_file(const fs::path& path, std::string_view text) {
   write_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
-
-namespace {
-
-void expect_writable(const fs::path& folder) {
-  try {
-    const OutputFile probe(folder / fmt::format(".probe-{}", ::getpid()));
-  } catch (const UserError&) {  // which would name the probe
-    throw UserError(folder.string(), 0, "cannot be written into, expected a writable place for the output");
-  }
-}
-
-}  // namespace
 
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;

@@ -40,7 +40,6 @@ Observed observe(unsigned seed, const LogWindow& window, Cycle interval = 100) {
   Observer* const observers[] = {&timeline, &series};
   Observed out;
   out.plain = simulate(made.trace, made.work, machine);
-  EXPECT_GT(books_of(out.plain, "raster").busy, 0u) << "seed " << seed << " draws nothing";
   out.result = simulate(made.trace, made.work, machine, Scheduler::skip_ahead, {}, observers);
   out.timeline = timeline_text.str();
   out.series = series_text.str();
@@ -66,6 +65,7 @@ std::map<std::string, std::map<std::string, Cycle>> cycles_of(const std::string&
 TEST(Observe, ChangesNothing) {
   for (const unsigned seed : kSeeds) {
     const Observed run = observe(seed, {});
+    EXPECT_GT(books_of(run.plain, "raster").busy, 0u) << "seed " << seed << " draws nothing";
     EXPECT_EQ(run.plain.event_hash, run.result.event_hash) << "seed " << seed;
     EXPECT_EQ(run.plain.cycles, run.result.cycles) << "seed " << seed;
   }
@@ -227,7 +227,7 @@ TEST(TimeSeries, RowsAddUpToTheResult) {
 
 // A reader of the table, or of a timeline's counters, finds columns by name.
 TEST(TimeSeries, ColumnsHaveNamesOfTheirOwn) {
-  for (const unsigned seed : kSeeds) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
     const std::string series = observe(seed, {}, 1000).series;
     std::istringstream header(series.substr(0, series.find('\n')));
     std::set<std::string> names;
