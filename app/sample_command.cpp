@@ -10,6 +10,8 @@
 
 #include "app/commands.h"
 #include "app/progress_bar.h"
+#include "model/error.h"
+#include "traces/models/patterns.h"
 #include "traces/output_files.h"
 #include "traces/point_file.h"
 #include "traces/surfels.h"
@@ -30,6 +32,10 @@ std::string refuse_nan(const std::string& text) {
 }
 
 void sample(const Options& options, bool quiet) {
+  if (options.source.pattern_scale != traces::default_settings().surfels.pattern_scale &&
+      !traces::has_scale(options.source.pattern))
+    throw UserError("--pattern-scale", 0,
+                    "without squares, stripes or spots, expected it removed, or another --pattern");
   const std::vector<traces::NamedFile> written{{"-o", options.out}};
   traces::expect_apart(written, {{"MESH", options.source.file}});
   { const traces::OutputFile writable(options.out); }  // before the work, not after it

@@ -220,8 +220,7 @@ void check_surfels(const SceneSettings& settings, std::string_view file) {
                     "surfels.generator beside surfels.file, expected one of them");
   const unsigned by_generator = is_plane(asked) ? kFromPlane : kFromModel;
   check_source(settings, file, asked.file.empty() ? by_generator : kFromModel | kFromPoints);
-  if (asked.pattern_scale != default_settings().surfels.pattern_scale &&
-      (asked.pattern == Pattern::own || asked.pattern == Pattern::plain))
+  if (asked.pattern_scale != default_settings().surfels.pattern_scale && !has_scale(asked.pattern))
     throw UserError(
         file, settings.line_of({"surfels.pattern_scale"}),
         "surfels.pattern_scale without squares, stripes or spots, expected it removed, or another "

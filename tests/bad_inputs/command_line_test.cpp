@@ -80,6 +80,8 @@ TEST(BadInputs, CommandLines) {
       {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "nan"},
       {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "inf"},
       {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "0"},
+      {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "0.1"},
+      {"sample", "mesh.obj", "-o", "s.ply", "--pattern-scale", "0.1", "--pattern", "plain"},
       {"explain", "tiny.toml"},
       {"explain", "tiny.toml", "--pixel", "1"},
       {"explain", "tiny.toml", "--pixel", "-1,1"},

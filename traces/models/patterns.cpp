@@ -79,6 +79,10 @@ std::span<const std::string_view> pattern_names() {
   return kNames;
 }
 
+bool has_scale(Pattern pattern) {
+  return pattern != Pattern::own && pattern != Pattern::plain;
+}
+
 double noise(const glm::dvec3& p) {
   const std::int64_t x = lattice(p.x), y = lattice(p.y), z = lattice(p.z);
   const glm::dvec3 at = glm::fract(p);

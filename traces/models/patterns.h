@@ -15,6 +15,9 @@ enum class Pattern { own, plain, checker, stripes, zebra, marble, spots, scales 
 // Their names in the order of the enumeration.
 std::span<const std::string_view> pattern_names();
 
+// Whether it has squares, stripes or spots, which have a size.
+bool has_scale(Pattern pattern);
+
 // `position` in units of the pattern: a square, stripe, spot or scale is about 1 across. Not for `own`.
 glm::vec3 pattern_color(Pattern pattern, const glm::dvec3& position);
 
