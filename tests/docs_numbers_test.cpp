@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -74,7 +73,7 @@ TEST_P(DocumentedSensitivity, is_what_the_program_finds) {
     if (change != "nothing") arguments.insert(arguments.end(), {"--set", change});
     const Outcome run = run_program(arguments);
     ASSERT_EQ(run.status, 0) << run.error;
-    const auto results = nlohmann::json::parse(text_of(folder.path() / "results.json"));
+    const auto results = results_in(folder.path());
     EXPECT_EQ(no_ewa, fmt::format("{:.1f}", results["frames"][0]["frames_per_second"].get<double>())) << line;
     ++compared;
   }

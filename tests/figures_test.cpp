@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "program.h"
 
@@ -15,7 +14,7 @@ TEST(Figures, TheQuadOfFigure8HoldsItsFilter) {
   const ScratchFolder folder;
   const Outcome outcome = run_program({"reproduce", "fig8", "--quiet", "--out", "out"}, folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.error;
-  const auto found = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["fig8"];
+  const auto found = results_in(folder.path() / "out")["fig8"];
   const double r0 = found["r0"], r1 = found["r1"], error = found["half_diagonal_error"];
   EXPECT_GT(r1, 1) << "the reconstruction kernel alone has axes of 1";
   EXPECT_GT(r0, r1);

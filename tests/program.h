@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,11 @@ inline Outcome run_program(const std::vector<std::string>& arguments,
   command += fmt::format(" >{} 2>{}", shell_word(out.string()), shell_word(error.string()));
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(error)};
+}
+
+// What a command wrote into its folder.
+inline nlohmann::json results_in(const std::filesystem::path& folder) {
+  return nlohmann::json::parse(text_of(folder / "results.json"));
 }
 
 }  // namespace splatscope::tests

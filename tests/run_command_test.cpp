@@ -24,7 +24,7 @@ TEST(CommandLine, WhatPointsLackIsEstimatedAndCounted) {
   EXPECT_NE(drawn.out.find("4 surfels, 1 left out (1 not finite), 4 normals estimated, 4 radii estimated\n"),
             std::string::npos)
       << drawn.out << drawn.error;
-  const auto surfels = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"];
+  const auto surfels = results_in(folder.path() / "out")["surfels"];
   EXPECT_EQ(surfels["normals_estimated"], 4);
   EXPECT_EQ(surfels["radii_estimated"], 4);
 }
@@ -37,7 +37,7 @@ TEST(CommandLine, RunWritesItsResults) {
   EXPECT_EQ(outcome.error, "") << "no progress bar on a pipe";
   for (const char* name : {"frame.png", "frame.exr", "depth.exr", "results.json"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "a/b" / name)) << name;
-  const auto results = nlohmann::json::parse(text_of(folder.path() / "a/b/results.json"));
+  const auto results = results_in(folder.path() / "a/b");
   EXPECT_EQ(results["machine"], "geforce4-ti4400");
   EXPECT_EQ(results["fidelity"], "cycle");
   const auto& frame = results["frames"].at(0);
@@ -65,7 +65,7 @@ TEST(CommandLine, TheResultsSayWhatWasSet) {
                                        "numbers.frame=half", "--fidelity", "sampled"});
     const Outcome outcome = run_program(arguments, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return nlohmann::json::parse(text_of(folder.path() / arguments[2] / "results.json"));
+    return results_in(folder.path() / arguments[2]);
   };
   const auto run = results_of({"run", "--out", "a", "--seed", "7"});
   EXPECT_EQ(run["set"], (nlohmann::json{{"memory.channels", "2"}, {"numbers.frame", "half"}}));
@@ -116,7 +116,7 @@ TEST(CommandLine, ASceneMayHaveANameThatIsNoText) {
   const std::string name = "sc\xe9ne.toml", shown = "sc\xef\xbf\xbdne";
   folder.file(name, kSmallScene);
   const auto input_of = [&](const char* out) -> std::string {
-    return nlohmann::json::parse(text_of(folder.path() / out / "results.json"))["input"];
+    return results_in(folder.path() / out)["input"];
   };
   const Outcome ran = run_program({"run", name, "--fidelity", "throughput", "--out", "a"}, folder.path());
   EXPECT_EQ(ran.status, 0) << ran.error;
@@ -153,7 +153,7 @@ TEST(CommandLine, AWindowAfterTheRunIsSaidToShowNothing) {
     return outcome.out;
   };
   const std::string none = said("999999999:9999999999");
-  const auto cycles = nlohmann::json::parse(text_of(folder.path() / "a/results.json"))["frames"][0]["cycles"];
+  const auto cycles = results_in(folder.path() / "a")["frames"][0]["cycles"];
   for (const auto& [what, option] :
        {std::pair{"timeline", "--timeline-window"}, {"pipeline log", "--pipeline-window"}})
     EXPECT_NE(none.find(fmt::format(
@@ -186,7 +186,7 @@ TEST(CommandLine, ASceneMayComeThroughAPipe) {
       fmt::format("cd {} && cat small.toml | {} run /dev/stdin --fidelity functional --out o >said",
                   folder.path().string(), SPLATSCOPE_PROGRAM);
   ASSERT_EQ(std::system(command.c_str()), 0);
-  const auto results = nlohmann::json::parse(text_of(folder.path() / "o/results.json"));
+  const auto results = results_in(folder.path() / "o");
   EXPECT_EQ(results["surfels"]["drawn"], 16 * 16);
 }
 
@@ -275,7 +275,7 @@ TEST(CommandLine, EveryCommandListsItsFilesAndRemovesAnEarlierOnes) {
     const auto& command = commands[i % commands.size()];
     const Outcome outcome = run_program(command, folder.path());
     ASSERT_EQ(outcome.status, 0) << outcome.error;
-    const auto results = nlohmann::json::parse(text_of(folder.path() / "o/results.json"));
+    const auto results = results_in(folder.path() / "o");
     std::vector<std::string> listed = results["files"], found;
     listed.emplace_back("own.png");
     std::ranges::sort(listed);
@@ -354,7 +354,7 @@ TEST(CommandLine, ASampledFrameIsNearTheCyclesAndGoesByItsSeed) {
     arguments.insert(arguments.end(), how.begin(), how.end());
     const Outcome outcome = run_program(arguments, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return nlohmann::json::parse(text_of(folder.path() / "o/results.json"))["frames"].at(0);
+    return results_in(folder.path() / "o")["frames"].at(0);
   };
   const auto cycles = frame({"cycle"})["cycles"].get<double>();
   const auto first = frame({"sampled", "--seed", "1"});
@@ -376,9 +376,7 @@ TEST(CommandLine, TraceOfASceneRunsAsTheScene) {
   ASSERT_EQ(run_program({"run", "small.trace", "--out", "b"}, folder.path()).status, 0);
   for (const char* name : {"frame.png", "frame.exr", "depth.exr"})
     EXPECT_TRUE(text_of(folder.path() / "a" / name) == text_of(folder.path() / "b" / name)) << name;
-  const auto frames = [&](const char* run) {
-    return nlohmann::json::parse(text_of(folder.path() / run / "results.json"))["frames"];
-  };
+  const auto frames = [&](const char* run) { return results_in(folder.path() / run)["frames"]; };
   EXPECT_EQ(frames("a"), frames("b"));
 }
 
@@ -393,7 +391,7 @@ TEST(CommandLine, EveryFrameOfATraceIsWritten) {
     const Outcome run =
         run_program({"run", "three.trace", "--out", "out", "--fidelity", fidelity}, folder.path());
     ASSERT_EQ(run.status, 0) << run.error;
-    const auto frames = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["frames"];
+    const auto frames = results_in(folder.path() / "out")["frames"];
     ASSERT_EQ(frames.size(), 3u);
     const char* names[] = {"frame-000.png", "frame-001.png", "frame.png"};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -434,8 +432,7 @@ TEST(CommandLine, ExtremeSurfelsLeaveAFiniteFrame) {
       const Outcome outcome = run_program(
           {"run", "extreme.toml", "--set", "numbers.frame=" + numbers, "--out", "out"}, folder.path());
       ASSERT_EQ(outcome.status, 0) << outcome.error;
-      const auto skipped =
-          nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"]["skipped"];
+      const auto skipped = results_in(folder.path() / "out")["surfels"]["skipped"];
       EXPECT_EQ(skipped["not_finite"], 2);
       EXPECT_EQ(skipped["zero_radius"], 1);
       EXPECT_EQ(skipped["zero_normal"], 1);
@@ -455,7 +452,7 @@ TEST(CommandLine, ACaptureThatSeesNothingIsWarnedOf) {
     return run_program({"run", scene, "--fidelity", "functional", "--out", "out"}, folder.path()).out;
   };
   const auto weights = [&] {
-    const auto surfels = nlohmann::json::parse(text_of(folder.path() / "out/results.json"))["surfels"];
+    const auto surfels = results_in(folder.path() / "out")["surfels"];
     return std::tuple(surfels["weights_captured"].get<int>(), surfels["weights_by_default"].get<int>(),
                       surfels["weights_outside_box"].get<int>());
   };

@@ -84,7 +84,7 @@ TEST(RunResults, CountWhatCanBeCountedByHand) {
   traces::write_trace(countable_trace(), folder.path() / "t.trace");
   const Outcome run = run_program({"run", "t.trace", "--out", "out"}, folder.path());
   ASSERT_EQ(run.status, 0) << run.error;
-  const Json results = Json::parse(text_of(folder.path() / "out/results.json"));
+  const Json results = results_in(folder.path() / "out");
   EXPECT_EQ(results["counters"], Json::parse(R"({"vertices": 27, "triangles": 9,
       "triangles_without_coverage": 2, "triangles_outside_frustum": 1, "triangles_behind_near": 1,
       "triangles_not_finite": 1, "triangles_back_facing": 1, "triangles_clipped": 1,

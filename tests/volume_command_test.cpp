@@ -21,7 +21,7 @@ TEST(VolumeCommand, DrawsAVolumeInEitherPrecision) {
         run_program({"volume", "head.toml", "--precision", precision, "--out", precision}, folder.path());
     ASSERT_EQ(outcome.status, 0) << outcome.error;
     const auto out = folder.path() / precision;
-    const auto results = nlohmann::json::parse(text_of(out / "results.json"));
+    const auto results = results_in(out);
     EXPECT_EQ(results["volume"]["size"], nlohmann::json({24, 24, 10}));
     const std::size_t splats = results["splats"], empty = results["volume"]["empty"];
     EXPECT_GT(splats, 500u);
@@ -41,11 +41,11 @@ TEST(VolumeCommand, CountsWhatIsDrawnAsRunDoes) {
   ASSERT_EQ(
       run_program({"run", "shells.toml", "--fidelity", "functional", "--out", "run"}, folder.path()).status,
       0);
-  const auto machine = nlohmann::json::parse(text_of(folder.path() / "run/results.json"))["volume"];
+  const auto machine = results_in(folder.path() / "run")["volume"];
   for (const std::string precision : {"single", "double"}) {
     const Outcome drawn =
         run_program({"volume", "shells.toml", "--precision", precision, "--out", precision}, folder.path());
-    const auto results = nlohmann::json::parse(text_of(folder.path() / precision / "results.json"));
+    const auto results = results_in(folder.path() / precision);
     EXPECT_EQ(results["sheets"], machine["sheets"]) << precision;
     const int splats = results["splats"], left_out = results["left_out"];
     EXPECT_NEAR(splats, int{machine["splats"]}, splats / 50) << "run counts splats between pixels too";
@@ -105,7 +105,7 @@ TEST(VolumeCommand, RunsAVolumeOnTheMachine) {
       run_program({"run", "head.toml", "--fidelity", "throughput", "--reference"}, folder.path());
   ASSERT_EQ(run.status, 0) << run.error;
   EXPECT_NE(run.out.find(" splats ("), std::string::npos) << run.out;
-  const auto results = nlohmann::json::parse(text_of(folder.path() / "out/results.json"));
+  const auto results = results_in(folder.path() / "out");
   EXPECT_GT(results["volume"]["flat_splats"], 100);
   EXPECT_GT(results["volume"]["splats"], results["volume"]["flat_splats"]);
   EXPECT_GT(results["frames"][0]["cycles"], 1000);
