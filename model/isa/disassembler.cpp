@@ -9,9 +9,11 @@
 namespace splatscope::isa {
 namespace {
 
-// Letters of a shader kind: positions in vertex programs and texture coordinates, colours elsewhere.
+// Positions in vertex programs and for the texture coordinates that t# holds in ps_1_4, colours elsewhere.
 std::string_view letters_of(const Program& program, RegisterFile file) {
-  return program.version.kind == ShaderKind::pixel && file != RegisterFile::texture ? "rgba" : "xyzw";
+  const Version& version = program.version;
+  const bool coordinates = file == RegisterFile::texture && version.minor == 4;
+  return version.kind == ShaderKind::pixel && !coordinates ? "rgba" : "xyzw";
 }
 
 std::string text_of(const Program& program, const Destination& destination) {

@@ -54,6 +54,24 @@ TEST(Tokens, ComeBackFromTheirDisassembly) {
   }
 }
 
+TEST(Tokens, OfScalarsCarryTheWholeMask) {
+  for (const char* mask : {"", ".x", ".y", ".z", ".w"}) {
+    const std::string text = std::string("vs_1_1\nmov oFog") + mask + ", v0.x\nmov oPts" + mask + ", v0.x\n";
+    const Tokens tokens = write_tokens(assemble(text, "a"));
+    EXPECT_EQ(tokens[2], 0xc00f0001u) << text;
+    EXPECT_EQ(tokens[5], 0xc00f0002u) << text;
+  }
+}
+
+// What is a colour before ps_1_4 has the letters of one.
+TEST(Tokens, ComponentsOfTexturesAreNamedByWhatTheyHold) {
+  for (const char* text : {"ps_1_1\ntex t0\nmov r0, t0.a\n", "ps_1_4\ntexcrd r0.rgb, t0.xyz\nmov r0, c0\n"}) {
+    const std::string again = disassemble(assemble(text, "a"));
+    EXPECT_EQ(again, disassemble(assemble(again, "b")));
+    EXPECT_NE(again.find(text[5] == '1' ? "t0.a" : "t0.xyz"), std::string::npos) << again;
+  }
+}
+
 TEST(Tokens, PlacesAreLinesOfTheDisassembly) {
   const Program program =
       assemble("vs_1_1\n\ndef c0, 0.1, -0, 1e-30, 16777216\nmov r0, c0\n\n  mov oPos, r0\n", "a");
@@ -101,10 +119,10 @@ TEST(Tokens, MutatedStreamsAreErrorsOrPrograms) {
       const Program program = read_tokens(tokens, "mutated");
       const Tokens written = write_tokens(program);
       EXPECT_EQ(write_tokens(assemble(disassemble(program), "again")), written) << disassemble(program);
-      // oFog and oPts are scalars: .x is written as the whole mask.
+      // oFog and oPts are scalars: written with the whole mask.
       const std::string text = disassemble(program);
       const bool scalar_mask =
-          text.find("oFog.x") != std::string::npos || text.find("oPts.x") != std::string::npos;
+          text.find("oFog.") != std::string::npos || text.find("oPts.") != std::string::npos;
       const bool comment = written.size() < tokens.size();  // skipped, so not written
       EXPECT_TRUE(scalar_mask || comment || written == tokens) << text;
       ++accepted;

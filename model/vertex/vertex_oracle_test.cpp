@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -70,7 +71,8 @@ struct Run {
 
 Vec4 run_operation(const json& test, Arithmetic arithmetic) {
   const std::string op = test["op"];
-  const bool scalar = op == "rcp" || op == "rsq" || op == "expp" || op == "logp";
+  const bool scalar =
+      op == "rcp" || op == "rsq" || op == "exp" || op == "expp" || op == "log" || op == "logp";
   std::string text = "vs_1_1\nmov r2, v1\n" + op + " oT0, v0" + (scalar ? ".x" : "");
   if (test["in"].size() > 1) text += ", c0";
   if (test["in"].size() > 2) text += ", r2";
@@ -100,6 +102,26 @@ TEST(VertexOracle, InstructionsOfTheNv20BitForBit) {
   for (const json& test : vectors["cases"])
     EXPECT_EQ(hex_of(run_operation(test, Arithmetic::nv20)), test["nv20"].get<std::vector<std::string>>())
         << test;
+}
+
+// exp and log are macros of Direct3D, which the vectors leave out: on an NV20 they are the correct result with
+// its one NaN, and without denormals on the way in or out.
+TEST(VertexOracle, ExponentAndLogarithmOfTheNv20KeepItsNumbers) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const auto result = [](const char* operation, float argument) {
+    const json test{{"op", operation}, {"in", json::array({hex_of({argument, 0, 0, 0})})}};
+    return hex_of(run_operation(test, Arithmetic::nv20))[0];
+  };
+  const auto hex = [](float value) { return hex_of({value, 0, 0, 0})[0]; };
+  EXPECT_EQ(result("log", 8.0f), hex(3.0f));
+  EXPECT_EQ(result("log", -0.25f), hex(-2.0f));
+  EXPECT_EQ(result("log", 0x1p-126f), hex(-126.0f));
+  EXPECT_EQ(result("log", 0x1p-127f), hex(-kInfinite));
+  EXPECT_EQ(result("log", std::numeric_limits<float>::quiet_NaN()), "7fffffff");
+  EXPECT_EQ(result("exp", 3.0f), hex(8.0f));
+  EXPECT_EQ(result("exp", -126.0f), hex(0x1p-126f));
+  EXPECT_EQ(result("exp", -126.5f), hex(0.0f));
+  EXPECT_EQ(result("exp", 128.0f), hex(kInfinite));
 }
 
 // Programs' vectors: constants and inputs, the rest 0 (inputs: 0,0,0,1).

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 namespace splatscope::sim {
 namespace {
 
@@ -79,7 +81,17 @@ TEST(IssueSlots, TheDriverKeepsEveryDependence) {
 }
 
 TEST(IssueSlots, MacrosTakeTheirSlots) {
-  EXPECT_EQ(issue_slots(program("m3x2 r0.xy, v0, c0\n"), plain()).size(), 2u);
+  const std::tuple<const char*, std::size_t, ComponentMask> macros[] = {
+      {"m4x4 r1, r0, c0\n", 4, 0xf},     {"m4x3 r1.xyz, r0, c0\n", 3, 0xf}, {"m3x4 r1, r0, c0\n", 4, 0x7},
+      {"m3x3 r1.xyz, r0, c0\n", 3, 0x7}, {"m3x2 r1.xy, r0, c0\n", 2, 0x7}};
+  for (const auto& [text, rows, reads] : macros) {
+    const auto slots = issue_slots(program(text), plain());
+    ASSERT_EQ(slots.size(), rows) << text;
+    for (std::size_t row = 0; row < rows; ++row) {
+      EXPECT_EQ(slots[row].reads, reads) << text;
+      EXPECT_EQ(slots[row].vector_writes, ComponentMask{0x10} << row) << text;
+    }
+  }
   const Program chain = program("exp r0.x, v0.x\n");
   EXPECT_EQ(issue_slots(chain, plain()).size(), static_cast<std::size_t>(isa::slot_count(chain)));
 }
