@@ -33,7 +33,9 @@ std::optional<Decoded<Value>> read(const Source& source, std::size_t most_channe
   std::optional<OIIO::Filesystem::IOMemReader> memory;
   if (source.bytes)  // only read
     memory.emplace(const_cast<std::byte*>(source.bytes->data()), source.bytes->size());
-  const auto input = OIIO::ImageInput::open(source.name, nullptr, memory ? &*memory : nullptr);
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by their alpha
+  const auto input = OIIO::ImageInput::open(source.name, &as_stored, memory ? &*memory : nullptr);
   if (!input) {
     OIIO::geterror();  // else the library prints it at exit
     return std::nullopt;

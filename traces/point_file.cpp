@@ -100,6 +100,20 @@ void check_size(const PlyHeader& header, const PlyElement& vertex, std::uintmax_
                                 vertex.name == "vertex" ? "vertices" : vertex.name + " elements", file_size));
 }
 
+// assimp scales the values of other types by what is not their range.
+void check_mesh_colors(const PlyHeader& header, const std::string& file) {
+  constexpr std::string_view kColors[] = {"red", "green", "blue"};
+  constexpr PlyType kTypes[] = {PlyType::uint8, PlyType::uint16, PlyType::float32, PlyType::float64};
+  for (const PlyElement& element : header.elements)
+    for (const PlyProperty& property : element.properties)
+      if (element.name == "vertex" && std::ranges::find(kColors, property.name) != std::end(kColors) &&
+          std::ranges::find(kTypes, property.type) == std::end(kTypes))
+        throw UserError(file, 0,
+                        fmt::format("the type of \"{}\" is none that colours of a mesh are read in, expected "
+                                    "uchar, ushort, float or double",
+                                    property.name));
+}
+
 std::ifstream open(const std::filesystem::path& path) {
   std::error_code error;
   std::ifstream in;
@@ -128,6 +142,7 @@ bool ply_has_faces(const std::filesystem::path& path) {
       throw UserError(file, 0, "holds triangle strips, expected a mesh of faces, or points alone");
     faces |= element.name == "face" && element.count > 0;
   }
+  if (faces) check_mesh_colors(header, file);
   return faces;
 }
 

@@ -16,10 +16,20 @@ namespace {
 constexpr std::size_t kSamples = 47;  // of a population
 constexpr std::size_t kFewest = 4;    // units to a sample, or all are simulated
 constexpr std::size_t kUnit = 2;      // stretches
-constexpr std::size_t kWarming = 2;   // stretches before a sample
-constexpr std::size_t kHead = 2;      // stretches at the start of a draw that are simulated
-constexpr std::size_t kTail = 2;      // at least, at its end
+constexpr std::size_t kTail = 2;      // stretches, at least, at the end of a draw
 constexpr double kCutBias = 0.004;
+
+// Stretches that fill what lies behind primitive assembly, whose clock the samples go by: before that, it
+// runs ahead of the units that keep it waiting later. Two at the least, for what else has a memory.
+std::size_t stretches_to_fill(const Machine& machine) {
+  constexpr int kQuads = 4;  // of a triangle, about
+  const int triangles = machine.primitive.queue + machine.setup.queue;
+  const int quads = machine.raster.queue + machine.depth.pending + machine.depth.queue +
+                    machine.texture.pending + machine.texture.queue + machine.pixel.queue +
+                    machine.blend.pending;
+  const auto held = static_cast<std::size_t>(triangles + quads / kQuads);
+  return std::max<std::size_t>(2, (held + kStretch - 1) / kStretch);
+}
 
 // Units of the draws of a frame that have their state in common. Frames are apart: what draws of one take
 // says little of another, as in progressive frames from coarse to fine.
@@ -100,6 +110,7 @@ class Sampler {
  public:
   Sampler(const Trace& trace, std::span<const DrawWork> work, const Machine& machine, std::uint64_t seed)
       : trace_(trace),
+        filling_(stretches_to_fill(machine)),
         layout_(lay_out(trace, machine)),
         draws_(prepare_draws(trace, work, machine, layout_)) {
     expect(machine);
@@ -139,9 +150,9 @@ class Sampler {
   };
 
   // Units of a draw between its start and its end.
-  static std::size_t units_between(const DrawJob& job) {
+  std::size_t units_between(const DrawJob& job) const {
     const std::size_t stretches = job.work->triangles.size() / kStretch;
-    return stretches <= kHead + kTail ? 0 : (stretches - kHead - kTail) / kUnit;
+    return stretches <= filling_ + kTail ? 0 : (stretches - filling_ - kTail) / kUnit;
   }
 
   // What Stretches expect of every unit.
@@ -158,7 +169,7 @@ class Sampler {
       const std::vector<Clocks> clocks = stretches.of(job);
       std::vector<double>& units = expected_.emplace_back(units_between(job));
       for (std::size_t i = 0; i < units.size() * kUnit; ++i)
-        units[i / kUnit] += *std::ranges::max_element(clocks[kHead + i]);
+        units[i / kUnit] += *std::ranges::max_element(clocks[filling_ + i]);
       population.units += units.size();
       for (const double unit : units) population.expected += unit;
     }
@@ -189,15 +200,15 @@ class Sampler {
       thin.keep(from * kStretch, std::min(to * kStretch, triangles));
       intervals_.push_back({role, &population, clocks});
     };
-    keep(0, kHead, Role::exact, 0);
+    keep(0, filling_, Role::exact, 0);
     for (std::size_t unit = 0; unit < expected.size(); ++unit) {
       if (!population.is_sample(population.passed + unit)) continue;
-      const std::size_t first = kHead + unit * kUnit;
-      keep(first - kWarming, first, Role::warming, 0);
+      const std::size_t first = filling_ + unit * kUnit;
+      keep(first - filling_, first, Role::warming, 0);
       keep(first, first + kUnit, Role::sample, expected[unit]);
     }
-    const std::size_t end = kHead + expected.size() * kUnit;
-    keep(end - kWarming, end, Role::warming, 0);
+    const std::size_t end = filling_ + expected.size() * kUnit;
+    keep(end - filling_, end, Role::warming, 0);
     keep(end, stretches, Role::exact, 0);
     job = thin.job();
   }
@@ -269,6 +280,7 @@ class Sampler {
   }
 
   const Trace& trace_;
+  const std::size_t filling_;  // stretches that run at the start of a draw, and before each sample
   MemoryLayout layout_;
   PreparedDraws draws_;
   std::map<State, Population> populations_;

@@ -16,7 +16,8 @@ namespace splatscope::sim {
 // Draws of one frame and state form a population of units of two stretches (`stretches.h`); every n-th unit
 // is a sample, the first one drawn at random from `seed`. Of each draw its start, its samples and its end run
 // as one draw: what lies between them passes through the tags of the caches alone, and the two stretches
-// before a sample warm what else has a memory: queues, rows of DRAM, vertices in flight. What was left out
+// before a sample (more where the machine's queues hold more) warm what else has a memory: queues, rows of
+// DRAM, vertices in flight. What was left out
 // then takes what the samples say, by the ratio of their cycles to what `Stretches` expect of them. A
 // population of fewer than `kFewest` units for each sample is simulated whole, as are clears and what the
 // host does. Samples at equal distances can fall in step with something periodic in a draw: of one draw at

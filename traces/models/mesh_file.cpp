@@ -17,6 +17,7 @@
 #include "model/processes.h"
 #include "model/run_apart.h"
 #include "traces/models/assimp_files.h"
+#include "traces/models/gltf_check.h"
 #include "traces/models/obj_text.h"
 #include "traces/models/off_check.h"
 #include "traces/models/texture_image.h"
@@ -243,6 +244,7 @@ MeshFile read_whole(const std::filesystem::path& path, Textures textures) {
   const bool regular = std::filesystem::is_regular_file(path, error);
   if (!regular || !std::ifstream(path)) throw UserError(file, 0, "cannot be read, expected a mesh");
   if (ending_of(path) == ".off") expect_whole_off(path);
+  if (ending_of(path) == ".gltf" || ending_of(path) == ".glb") expect_plain_gltf(path);
   if (ending_of(path) ==
       ".ply") {  // whose reader in assimp hangs on some headers and fills up what is missing
     if (!ply_has_faces(path)) throw UserError(file, 0, "holds no faces, expected a mesh");
