@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -29,6 +30,11 @@ struct View {
   // Eq. 10. `p` in camera space, p.z > 0.
   glm::dvec2 window(const glm::dvec3& p) const {
     return center() + glm::dvec2(eta * p.x / p.z, -eta * p.y / p.z);
+  }
+  // Camera z of the point at camera z `z` of a pixel's ray, moved away from the eye by z_t (Ren 2002, 5.1).
+  double moved_back(double z, int column, int row, double z_t) const {
+    const glm::dvec2 ray = (glm::dvec2(column, row) + 0.5 - center()) / eta;
+    return z + z_t / std::sqrt(ray.x * ray.x + ray.y * ray.y + 1);
   }
   // Camera z of a depth in the frustum: 0 at the near plane, 1 at the far plane.
   double z_of(double depth) const { return near_plane / (1 - depth * (far_plane - near_plane) / far_plane); }

@@ -13,9 +13,12 @@ namespace {
 std::size_t dots_of_line(std::string_view text) {
   std::size_t dots = 0;
   char quote = 0;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     if (c == '\n' || (c == '#' && quote == 0)) break;
-    if (c == quote) {
+    if (c == '\\' && quote == '"') {
+      ++i;  // an escaped quote ends no string
+    } else if (c == quote) {
       quote = 0;
     } else if (quote == 0) {
       if (c == '"' || c == '\'') quote = c;

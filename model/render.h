@@ -51,7 +51,8 @@ struct Rendered {
 
 // Draws every command of `trace`. The trace must hold together (traces/ checks one that comes from a file):
 // indices in range, index counts multiples of 3. Throws UserError where a program does not assemble.
-// `progress` is told the fraction done, from 0 to 1. `on_frame` is given every frame of the trace
+// `progress` is told the fraction done as a command begins, from 0 to below 1. `on_frame` is given every
+// frame of the trace
 // (`frame_ends`) when it is done, in order. `on_work` takes the work of each draw when it is done, in order;
 // it is then not kept. The next draws are begun meanwhile: `progress` and `on_work` are called from any
 // thread and beside one another.

@@ -390,6 +390,31 @@ TEST(Simulate, TheHostsTimeGoesByTheBytesOfAPixel) {
   EXPECT_EQ(cycles(FrameFormat::float32) - cycles(FrameFormat::unorm8), 64u * 64 * 3 * (7 + 1));
 }
 
+TEST(Simulate, SurfacesTexturesAndBuffersLieApart) {
+  Trace trace;
+  trace.width = trace.height = 64;
+  trace.surfaces = 2;
+  trace.textures.resize(2);
+  for (Texture& texture : trace.textures) {
+    texture.width = texture.height = 100;
+    texture.texels.resize(10000);
+  }
+  trace.buffers.resize(4, {MemoryPlace::video, std::vector<std::byte>(70000)});
+  trace.buffers[1].place = trace.buffers[3].place = MemoryPlace::agp;
+  const MemoryLayout layout = lay_out(trace, machine::load("geforce4-ti4400"));
+  using Part = std::pair<std::uint64_t, std::uint64_t>;  // address, bytes
+  std::vector<Part> video{{layout.color_address, std::uint64_t{layout.color.bytes()} * 3},
+                          {layout.depth_address, layout.depth.bytes()}};
+  std::vector<Part> agp;
+  for (const std::uint32_t address : layout.textures) video.emplace_back(address, 10000);
+  for (std::size_t i = 0; i < 4; ++i) (i % 2 ? agp : video).emplace_back(layout.buffers[i], 70000);
+  for (std::vector<Part>* parts : {&video, &agp}) {
+    std::ranges::sort(*parts);
+    for (std::size_t i = 1; i < parts->size(); ++i)
+      EXPECT_LE((*parts)[i - 1].first + (*parts)[i - 1].second, (*parts)[i].first) << i;
+  }
+}
+
 TEST(Simulate, ADepthBufferOf16BitsIsHalfAsLarge) {
   Trace trace;
   trace.width = trace.height = 64;

@@ -285,10 +285,12 @@ std::string explain_vertex(const Trace& trace, const NumberFormats& formats, std
   const std::vector<std::byte>& bytes = trace.buffers[draw.vertex_buffer].bytes;
   const std::uint64_t vertex = std::uint64_t{draw.base_vertex} + index;
   const std::uint64_t vertices = draw.vertex_stride == 0 ? 0 : bytes.size() / draw.vertex_stride;
+  if (vertices <= draw.base_vertex)
+    throw UserError("--vertex", 0, fmt::format("draw {} has no vertices, expected a draw with some", number));
   if (vertex >= vertices) {
     throw UserError("--vertex", 0,
                     fmt::format("vertex {} of draw {}, expected one from 0 to {}", index, number,
-                                static_cast<std::int64_t>(vertices) - 1 - draw.base_vertex));
+                                vertices - 1 - draw.base_vertex));
   }
   vertex::InputBatch inputs;
   vertex::fill_defaults(inputs);

@@ -50,7 +50,7 @@ class Fragments {
     return SplatFragment{k,
                          pixel,
                          kept,
-                         hit.z <= moved_back(surface_.depth[pixel], x, y),
+                         hit.z <= view_.moved_back(surface_.depth[pixel], x, y, depth_offset_),
                          layer(k, pixel, hit.z),
                          value * splats_[k]->height};
   }
@@ -66,12 +66,6 @@ class Fragments {
     out = Splat{kernels::RayPlane(view_, view_.camera_space(surfel.position), a, b),
                 0.5 * std::numbers::inv_pi / std::sqrt(filter->determinant),
                 kernels::filter_reach(filter_) * glm::length(a)};
-  }
-
-  // Camera z of the point at depth z of the pixel's ray, moved away from the eye by z_t.
-  double moved_back(double z, int x, int y) const {
-    const glm::dvec2 ray = (glm::dvec2(x, y) + 0.5 - view_.center()) / view_.eta;
-    return z + depth_offset_ / std::sqrt(glm::dot(ray, ray) + 1);
   }
 
   Layer layer(std::uint32_t k, std::size_t pixel, double z) const {

@@ -216,7 +216,10 @@ WorkStream stream_of(std::string_view body, const Trace& trace) {
 std::string work_key(const Trace& trace, const RenderOptions& options) {
   Writer text;
   const std::vector<std::byte> stored = traces::trace_bytes(trace);
-  const std::string program = bytes_of("/proc/self/exe");
+  constexpr const char* kProgram = "/proc/self/exe";
+  const std::string program = bytes_of(kProgram);
+  if (program.empty())
+    throw UserError(kProgram, 0, "cannot be read, expected this program, whose work is kept by its bytes");
   // All of them by name: one more does not compile until it is here too.
   const auto& [arithmetic, color, combiner, frame, rounding, depth, subpixel_bits, filter_bits,
                reciprocal_bits] = options.formats;

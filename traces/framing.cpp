@@ -47,7 +47,11 @@ double fitting_distance(std::span<const Surfel> surfels, const Axes& axes, const
 
 }  // namespace
 
-void frame_camera(std::span<const Surfel> surfels, const Frame& frame, const CameraKeys& given,
+double corner_reach(const Splatting& splatting) {
+  return std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff));
+}
+
+void frame_camera(std::span<const Surfel> surfels, double reach, const Frame& frame, const CameraKeys& given,
                   Camera& camera) {
   if (surfels.empty()) return;
   if (!given.up) camera.up = {0, 1, 0};
@@ -72,8 +76,9 @@ void frame_camera(std::span<const Surfel> surfels, const Frame& frame, const Cam
   double nearest = std::numeric_limits<double>::infinity(), furthest = 0;
   for (const Surfel& s : surfels) {
     const double depth = axes.of(glm::dvec3(s.position) - camera.eye).z;
-    nearest = std::min(nearest, depth - 2.0 * s.radius);
-    furthest = std::max(furthest, depth + 2.0 * s.radius);
+    const double corner = std::max(2.0, reach) * s.radius;
+    nearest = std::min(nearest, depth - corner);
+    furthest = std::max(furthest, depth + corner);
   }
   if (!given.far) camera.far = furthest > 0 ? furthest : 1;  // 0: all of them behind the eye
   if (!given.near) camera.near = std::max(nearest, kClosest * camera.far);

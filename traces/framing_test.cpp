@@ -1,10 +1,13 @@
 #include "traces/framing.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "traces/scene.h"
@@ -32,7 +35,7 @@ RC_GTEST_PROP(Framing, EverySurfelIsSeenAndTheFrameIsFilled, ()) {
   const std::vector<Surfel> surfels = any_surfels();
   const Frame frame{*rc::gen::element(100, 400), *rc::gen::element(100, 300)};
   Camera camera;
-  frame_camera(surfels, frame, {}, camera);
+  frame_camera(surfels, 2, frame, {}, camera);
   RC_ASSERT(camera.near > 0 && camera.near < camera.far);
   const kernels::View view = view_of(camera, frame);
   double furthest = 0;
@@ -58,6 +61,25 @@ TEST(Framing, WhatIsGivenStays) {
   EXPECT_NEAR(scene.camera.target.x, 0, 0.2) << "the middle of the surfels";
   EXPECT_GT(scene.camera.near, 7);
   EXPECT_LT(scene.camera.near, 8.2) << "just before them";
+}
+
+// Whose quads reach further where the filter is wider or cut off later.
+TEST(Framing, ThePlanesHoldTheWholeSplats) {
+  for (const auto& [sigma, cutoff] : {std::pair{1.0, 1.0}, {0.5, 1.0}, {1.0, 8.0}, {3.0, 4.0}}) {
+    const Scene scene =
+        parse_scene(fmt::format("[surfels]\ngenerator = \"sphere\"\ncount = 200\n[camera]\neye = [0, 0, 9]\n"
+                                "target = [0, 0, 0]\n[splatting]\nsigma = {}\ncutoff = {}\n",
+                                sigma, cutoff),
+                    "s.toml");
+    double nearest = 9, furthest = 0;
+    for (const Surfel& s : scene.surfels) {
+      const double corner = 2 * sigma * std::sqrt(cutoff) * s.radius, z = 9 - double{s.position.z};
+      nearest = std::min(nearest, z - corner);
+      furthest = std::max(furthest, z + corner);
+    }
+    EXPECT_LE(scene.camera.near, nearest + 1e-6) << sigma << ' ' << cutoff;
+    EXPECT_GE(scene.camera.far, furthest - 1e-6) << sigma << ' ' << cutoff;
+  }
 }
 
 TEST(Framing, ThePlaneKeepsItsCamera) {

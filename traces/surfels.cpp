@@ -82,7 +82,8 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
     estimate_radii(surfels, settings.surfels.neighbours);
     leave_out_zero_radii();
   }
-  frame_camera(surfels, {settings.width, settings.height}, settings.camera_given, result.camera);
+  frame_camera(surfels, corner_reach(settings.splatting), {settings.width, settings.height},
+               settings.camera_given, result.camera);
   if (!points.has_normals) estimate_normals(surfels, settings.surfels.neighbours, result.camera.eye);
   result.skipped.zero_normal = std::erase_if(surfels, [](Surfel& s) { return !normalize(s); });
   for (Surfel& s : surfels) s.color = glm::clamp(s.color, 0.0f, 1.0f);

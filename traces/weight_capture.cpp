@@ -16,6 +16,7 @@
 #include "model/render.h"
 #include "model/stop.h"
 #include "traces/edges.h"
+#include "traces/framing.h"
 #include "traces/median.h"
 
 namespace splatscope::traces {
@@ -27,11 +28,6 @@ constexpr double kSmallestCosine = 0.5;  // 60 degrees
 // there.
 constexpr float kLeastCorner = 0.5f;
 constexpr double kCaptureFieldOfView = 45;  // degrees
-
-// How far a quad's corners are from its surfel's centre.
-double corner_distance(const Surfel& surfel, const Splatting& splatting) {
-  return std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff)) * surfel.radius;
-}
 
 // Looks at the whole sphere from one side.
 struct CaptureView {
@@ -58,7 +54,7 @@ class CapturedViews {
                 const NumberFormats& formats, const std::function<void(double)>& progress)
       : both_faces_(splatting.faces != Faces::front) {
     const kernels::Sphere sphere = kernels::bounding_sphere(
-        surfels, [&](const Surfel& surfel) { return corner_distance(surfel, splatting); });
+        surfels, [&](const Surfel& surfel) { return corner_reach(splatting) * surfel.radius; });
     RenderOptions options;
     options.formats = formats;
     for (int i = 0; i < capture.views; ++i) {
@@ -111,7 +107,7 @@ class CapturedViews {
     constexpr double kLeast = 0.999 * kSmallestCosine;  // for rounding
     return std::ranges::any_of(surfels, [&](const Surfel& surfel) {
       const glm::dvec3 toward = view.eye - glm::dvec3(surfel.position);
-      const double nearest = glm::length(toward) - corner_distance(surfel, splatting);
+      const double nearest = glm::length(toward) - corner_reach(splatting) * surfel.radius;
       return facing(surfel.normal, toward) >= kLeast * nearest;
     });
   }

@@ -23,7 +23,8 @@ struct FastPicture {
   int width = 0;
   int height = 0;
   std::vector<glm::vec4> pixels;  // normalised r g b, 0 where nothing counts; in w the summed weights
-  std::size_t left_out = 0;  // surfels that face away, are before the near plane, or have no finite filter
+  // Surfels that face away, are before the near plane or outside of the picture, or have no finite filter.
+  std::size_t left_out = 0;
 };
 
 // The picture of screen_space_ewa with the affine map and the circular cutoff, in single precision: SIMD over

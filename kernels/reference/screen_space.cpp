@@ -114,7 +114,9 @@ class Renderer {
       for (int column = box.left; column < box.right; ++column) {
         const RayHit hit = splat.quad(column + 0.5, row + 0.5);
         if (!(std::abs(hit.y.x) <= 1 && std::abs(hit.y.y) <= 1)) continue;
-        if (!(hit.z >= view_.near_plane && moved_back(hit.z, row, column) <= view_.far_plane)) continue;
+        if (!(hit.z >= view_.near_plane &&
+              view_.moved_back(hit.z, column, row, settings_.depth_offset) <= view_.far_plane))
+          continue;
         double& nearest = picture_.depth[index(row, column)];
         nearest = std::min(nearest, hit.z);
       }
@@ -131,17 +133,11 @@ class Renderer {
         const double value =
             filter_value(settings_.filter, affine ? splat.to_filter * (x - splat.center) : hit.y);
         if (!(value > 0) || !(hit.z >= view_.near_plane && hit.z <= view_.far_plane)) continue;
-        if (hit.z > moved_back(picture_.depth[index(row, column)], row, column)) continue;
+        if (hit.z > view_.moved_back(picture_.depth[index(row, column)], column, row, settings_.depth_offset))
+          continue;
         picture_.sums[index(row, column)] += value * splat.weighted_color;
       }
     }
-  }
-
-  // Camera z of the point at depth z of the pixel's ray, moved away from the eye by z_t.
-  double moved_back(double z, int row, int column) const {
-    const double x = (column + 0.5 - view_.center().x) / view_.eta;
-    const double y = (row + 0.5 - view_.center().y) / view_.eta;
-    return z + settings_.depth_offset / std::sqrt(x * x + y * y + 1);
   }
 
   std::size_t index(int row, int column) const {

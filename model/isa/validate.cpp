@@ -84,6 +84,10 @@ unsigned destination_components_read(Opcode opcode) {
   return opcode == Opcode::texdepth ? 0x3 : opcode == Opcode::texkill ? 0x7 : 0;
 }
 
+bool is_replicated(const Source& source) {
+  return std::ranges::all_of(source.swizzle, [&](std::uint8_t lane) { return lane == source.swizzle[0]; });
+}
+
 void check_read_ports(const Program& program, const Instruction& instruction, RegisterFile file, int ports) {
   std::vector<std::pair<bool, int>> distinct;  // relative or not, index
   for (int i = 0; i < instruction.source_count; ++i) {

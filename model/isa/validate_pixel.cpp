@@ -18,12 +18,8 @@ namespace {
 
 using enum Opcode;
 
-constexpr std::array<std::uint8_t, 4> kNoSwizzle{0, 1, 2, 3}, kXyz{0, 1, 2, 2}, kXyw{0, 1, 3, 3};
+constexpr std::array<std::uint8_t, 4> kXyz{0, 1, 2, 2}, kXyw{0, 1, 3, 3};
 constexpr std::array<std::uint8_t, 4> kBlue{2, 2, 2, 2}, kAlpha{3, 3, 3, 3};
-
-bool is_replicate(const Source& source) {
-  return std::ranges::all_of(source.swizzle, [&](std::uint8_t lane) { return lane == source.swizzle[0]; });
-}
 
 class PixelValidator {
  public:
@@ -174,13 +170,13 @@ class PixelValidator {
     if (version_1_4_ && source.file == RegisterFile::constant && (source.negate || source.modifier != none))
       reject(program_, instruction, "a constant takes no source modifier in ps_1_4");
     if (version_1_4_) {
-      if (source.swizzle != kNoSwizzle && !is_replicate(source))
+      if (source.swizzle != kIdentity && !is_replicated(source))
         reject(program_, instruction,
                "a source selects one component (.r .g .b .a) or all, ps_1_4 has no general swizzle");
     } else if (source.swizzle == kBlue) {
       if (instruction.destination.mask != 0x8)
         reject(program_, instruction, "the selector .b needs the write mask .a before ps_1_4");
-    } else if (source.swizzle != kNoSwizzle && source.swizzle != kAlpha) {
+    } else if (source.swizzle != kIdentity && source.swizzle != kAlpha) {
       reject(program_, instruction, "a source selects .a (or .b for the write mask .a) or all before ps_1_4");
     }
   }
@@ -211,7 +207,7 @@ class PixelValidator {
     check_rows(instruction);
     if (instruction.source_count == 0) return;
     const Source& source = instruction.sources[0];
-    if (source.file != RegisterFile::texture || source.swizzle != kNoSwizzle)
+    if (source.file != RegisterFile::texture || source.swizzle != kIdentity)
       reject(program_, instruction, "the source of a texture address instruction is a whole t#");
     if (source.index >= stage)
       reject(program_, instruction,
@@ -251,7 +247,7 @@ class PixelValidator {
       reject(program_, instruction, "_dw is for t#_dw.xyw sources");
     if (source.negate || (source.modifier != none && source.modifier != dz && source.modifier != dw))
       reject(program_, instruction, "texld and texcrd take no source modifier but _dz and _dw");
-    const bool whole = source.swizzle == kNoSwizzle || source.swizzle == kXyz;
+    const bool whole = source.swizzle == kIdentity || source.swizzle == kXyz;
     if (!whole && !(coordinates && source.swizzle == kXyw))
       reject(program_, instruction, "the source of texld and texcrd selects .xyz, or .xyw of t#");
     if (coordinates && selectors_[source.index] && *selectors_[source.index] != whole)

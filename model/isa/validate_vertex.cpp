@@ -19,12 +19,6 @@ bool is_scalar(Opcode opcode) {
   return opcode == rcp || opcode == rsq || opcode == exp || opcode == expp || opcode == log || opcode == logp;
 }
 
-bool is_replicated(const Source& source) {
-  return std::ranges::all_of(source.swizzle, [&](std::uint8_t lane) { return lane == source.swizzle[0]; });
-}
-
-constexpr std::array<std::uint8_t, 4> kIdentity{0, 1, 2, 3};
-
 class VertexValidator {
  public:
   explicit VertexValidator(const Program& program) : program_(program) {}

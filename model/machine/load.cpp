@@ -265,7 +265,7 @@ Machine parse(std::string_view text, std::string_view file) {
       continue;
     }
     const toml::table* group = node.as_table();
-    if (!group || known_keys(key.str()).empty()) {
+    if (!group || key.str().empty() || known_keys(key.str()).empty()) {
       place_of(node, file)
           .fail(fmt::format("unknown key \"{}\", expected title, base or a group of {}", key.str(),
                             known_keys("")));

@@ -70,7 +70,8 @@ struct Corners {
 void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
             bool interpolates, std::span<TriangleSetup> out);
 
-// 8x8-pixel tiles that the rectangle of a setup touches.
+// 8x8-pixel tiles that the rectangle of a setup touches. It has the pixels whose centres lie on its right and
+// lower side, which the fill rule leaves out: the scan looks at them too.
 std::uint32_t tiles_touched(const TriangleSetup& setup);
 
 // 8x8 pixels at even coordinates, a bit each in the order of quads: bit 16*(row of quads) + 4*(column of

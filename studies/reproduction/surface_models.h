@@ -21,7 +21,7 @@ struct SurfaceModel {
 
 // Ellipsoid-like head of `points` surfels with noise for features and a fine texture.
 SurfaceModel head_model(int points, int size);
-// A height field of mountains with rock, meadows and snow; `points` is rounded down to a square number.
+// A height field of mountains with rock, meadows and snow; `points` in all.
 SurfaceModel terrain_model(int points, int size);
 // Ellipsoids in the places of cabin (of glass), seats, boom, fins, skids and rotors. `points` in all.
 SurfaceModel helicopter_model(int points, int size);

@@ -1,7 +1,5 @@
 #include "studies/reproduction/volume_models.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,17 +18,8 @@ glm::ivec3 scaled(const glm::ivec3& size, double scale) {
   return glm::max(glm::ivec3(scale * glm::dvec3(size)), glm::ivec3(4));
 }
 
-// Values of a formula of the object space.
-Volume filled(const glm::ivec3& size, const dvec3& extent, double (*value)(const dvec3&)) {
-  Volume volume = kernels::centered_volume(size, extent / dvec3(size));
-  oneapi::tbb::parallel_for(0, size.z, [&](int z) {
-    glm::ivec3 voxel{0, 0, z};
-    for (voxel.y = 0; voxel.y < size.y; ++voxel.y) {
-      for (voxel.x = 0; voxel.x < size.x; ++voxel.x)
-        volume.values[volume.index(voxel)] = static_cast<float>(value(volume.position(voxel)));
-    }
-  });
-  return volume;
+Volume grid(const glm::ivec3& size, const dvec3& extent) {
+  return kernels::centered_volume(size, extent / dvec3(size));
 }
 
 // Signed distances, negative inside.
@@ -135,7 +124,7 @@ VolumeModel volume_engine(int frame, double scale) {
                                             {0.65, {0, casing}},
                                             {0.75, {0.4, pins}},
                                             {1.0, {0.4, pins}}});
-  const Volume volume = filled(model.size, {2, 2, 2 * 110.0 / 256}, engine);
+  const Volume volume = kernels::filled(grid(model.size, {2, 2, 2 * 110.0 / 256}), engine);
   model.splats = kernels::grid_splats(volume, transfer, 1, {0.1, 0.45});
   model.view = view_from({1.5, 2.2, 4.0}, {0, 1, 0}, 26, frame);
   return model;
@@ -151,7 +140,7 @@ VolumeModel volume_foot(int frame, double scale) {
                                             {0.4, {0, flesh}},
                                             {0.5, {0.4, bone}},
                                             {1.0, {0.45, bone}}});
-  const Volume volume = filled(model.size, {2 * 152.0 / 261, 2, 2 * 220.0 / 261}, foot);
+  const Volume volume = kernels::filled(grid(model.size, {2 * 152.0 / 261, 2, 2 * 220.0 / 261}), foot);
   model.splats = kernels::grid_splats(volume, transfer, 1, {0.4, 0.9});
   model.view = view_from({3.6, -2.6, 1.6}, {0, 0, 1}, 27, frame);
   return model;

@@ -109,6 +109,18 @@ TEST(BadInputs, CommandLines) {
   for (const auto& arguments : bad) inputs.refused("", arguments);
 }
 
+// Taken down, the tables of so many parts would overflow the stack.
+TEST(BadInputs, KeysOfTooManyParts) {
+  BadInputs inputs;
+  for (const char* first : {"a", "\"a\"", "\"\\\"\"", "'\\'", "\"\\\\\""}) {
+    std::string key = first;
+    for (int i = 0; i < 60000; ++i) key += ".a";
+    inputs.file("deep.toml", key + " = 1\n");
+    inputs.refused(first, {"machine", "show", "deep.toml"});
+    inputs.refused(first, {"run", "deep.toml"});
+  }
+}
+
 // Every kind of input against what is no file of that kind.
 TEST(BadInputs, FilesThatAreNone) {
   BadInputs inputs;

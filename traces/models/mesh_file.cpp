@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <system_error>
 
 #include "model/error.h"
 #include "model/processes.h"
@@ -311,6 +312,8 @@ void expect_bounded(const std::filesystem::path& path) {
     in_processes(1, 1, try_it);
   } catch (const UserError&) {
     throw;
+  } catch (const std::system_error&) {
+    throw;  // no process or pipe could be had, which says nothing of the mesh
   } catch (const std::runtime_error&) {
     throw UserError(
         path.string(), 0,

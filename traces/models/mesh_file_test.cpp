@@ -106,6 +106,23 @@ TEST_F(MeshFileTest, APlyWithFacesIsAMeshAndOneWithoutIsPoints) {
       fmt::format("{}element tristrips 1\nproperty list uchar int vertex_indices\nend_header\n{}3 0 1 2\n",
                   head, vertices);
   EXPECT_NE(error_of("s.ply", strips).find("holds triangle strips, expected"), std::string::npos);
+  for (const auto& [type, is_read] : {std::pair{"uchar", true},
+                                      {"ushort", true},
+                                      {"float", true},
+                                      {"double", true},
+                                      {"char", false},
+                                      {"short", false},
+                                      {"int", false},
+                                      {"uint", false}}) {
+    const std::string faces = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nproperty {0} red\nproperty {0} green\nproperty {0} blue\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n"
+        "3 0 1 2\n",
+        type);
+    const bool refused = error_of("c.ply", faces).find("none that colours of a mesh") != std::string::npos;
+    EXPECT_EQ(refused, !is_read) << type;
+  }
 }
 
 TEST_F(MeshFileTest, AByteOrderMarkIsPassedOver) {
@@ -164,6 +181,17 @@ TEST_F(MeshFileTest, ColoursComeFromTheTexture) {
   const Scene without = scene_of("m.obj", mesh, "count = 10\nshading = 0\n");
   EXPECT_EQ(without.mesh.textures_unreadable, 1u);
   EXPECT_EQ(without.surfels[0].color, glm::vec3(0.5f)) << "the material's colour stands in";
+}
+
+// Red of alpha 64, in a Targa file of 32 bits.
+TEST_F(MeshFileTest, ColoursOfATextureAreNotMultipliedByItsAlpha) {
+  file("t.tga", std::string_view("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x28\0\0\xff\x40", 22));
+  file("m.mtl", "newmtl skin\nmap_Kd t.tga\n");
+  const Scene scene = scene_of("m.obj",
+                               "mtllib m.mtl\nusemtl skin\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\n"
+                               "f 1/1 2/1 3/1\n",
+                               "count = 10\nshading = 0\n");
+  for (const Surfel& s : scene.surfels) EXPECT_EQ(s.color, glm::vec3(1, 0, 0));
 }
 
 // Each part by itself: a texture needs places in it, and colours of another part are none of its own.

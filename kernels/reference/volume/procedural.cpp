@@ -15,21 +15,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// `at(position)` at every voxel.
-template <class At>
-Volume filled(Volume volume, const At& at) {
-  oneapi::tbb::parallel_for(0, volume.size.z, [&](int z) {
-    stop_if_asked();
-    for (int y = 0; y < volume.size.y; ++y) {
-      for (int x = 0; x < volume.size.x; ++x) {
-        const glm::ivec3 voxel{x, y, z};
-        volume.values[volume.index(voxel)] = static_cast<float>(at(volume.position(voxel)));
-      }
-    }
-  });
-  return volume;
-}
-
 Volume cube(int n) {
   return centered_volume(glm::ivec3(n), glm::dvec3(2.0 / (n - 1)));
 }
@@ -102,6 +87,19 @@ double head(glm::dvec3 p) {
 }
 
 }  // namespace
+
+Volume filled(Volume grid, const std::function<double(const glm::dvec3&)>& value) {
+  oneapi::tbb::parallel_for(0, grid.size.z, [&](int z) {
+    stop_if_asked();
+    for (int y = 0; y < grid.size.y; ++y) {
+      for (int x = 0; x < grid.size.x; ++x) {
+        const glm::ivec3 voxel{x, y, z};
+        grid.values[grid.index(voxel)] = static_cast<float>(value(grid.position(voxel)));
+      }
+    }
+  });
+  return grid;
+}
 
 Volume marschner_lobb(int n) {
   constexpr double kFrequency = 6, kAlpha = 0.25;

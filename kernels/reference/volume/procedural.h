@@ -1,9 +1,14 @@
 #pragma once
 
+#include <functional>
+
 #include "kernels/reference/volume/volume.h"
 
 // Volumes that need no file. All are centred at the object space's origin; values in [0, 1].
 namespace splatscope::kernels {
+
+// The grid with `value(position)` at every voxel.
+Volume filled(Volume grid, const std::function<double(const glm::dvec3&)>& value);
 
 // The test signal of Marschner and Lobb (1994), f_M = 6 and alpha = 0.25, on [-1, 1]^3; n^3 voxels, n >= 2
 // (40 in their paper, close to its Nyquist frequency).

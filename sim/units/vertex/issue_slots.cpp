@@ -35,7 +35,7 @@ std::vector<Instruction> matrix_rows(const Instruction& instruction, const isa::
     Instruction dot = instruction;
     dot.opcode = shape.columns == 4 ? Opcode::dp4 : Opcode::dp3;
     dot.destination.mask = static_cast<std::uint8_t>(1u << row);
-    dot.sources[1].index = static_cast<std::uint8_t>(instruction.sources[1].index + row);
+    dot.sources[1].index = static_cast<std::uint16_t>(instruction.sources[1].index + row);
     rows.push_back(dot);
   }
   return rows;

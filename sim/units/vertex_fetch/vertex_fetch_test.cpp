@@ -17,8 +17,9 @@ struct FetchBench {
   Channel<std::uint8_t> order;
   testing::TestMemory indices, vertices;
 
-  FetchBench(testing::TestDraw& draw, const Machine::Fetch& spec, Cycle second_from)
+  FetchBench(testing::TestDraw& draw, const Machine::Fetch& spec, Cycle second_from, Cycle first_from = 0)
       : fetch("vertex_fetch", bench.completion(), spec),
+        first(first_from),
         second(second_from),
         to_first((bench.add(fetch), bench.add(first), "to first"), fetch, first, 1),
         to_second((bench.add(second), "to second"), fetch, second, 1),
@@ -92,6 +93,15 @@ TEST(VertexFetch, GoesToTheUnitThatIsFree) {
   for (const auto& [at, unit] : run.order_sink.taken()) order.push_back(unit);
   EXPECT_EQ(order, (std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(run.bench.done_at(), 202u);  // the end of the draw reaches the second unit in 201
+}
+
+// The channels hold one vertex each, handed out in 22 and 23. What is taken in 200 leaves room in 201.
+TEST(VertexFetch, IsBlockedWhileNoUnitHasRoom) {
+  testing::TestDraw draw = two_quads();
+  const FetchBench run(draw, {}, 200, 200);
+  const Books books = run.bench.books(run.fetch, run.bench.done_at());
+  constexpr std::size_t kBlockedByFirst = 3 + 2;  // the second unit after the one that waits for the draw
+  EXPECT_EQ(books.cycles[kBlockedByFirst], 201u - 24);
 }
 
 }  // namespace
