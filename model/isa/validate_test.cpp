@@ -1,5 +1,6 @@
 #include "model/isa/validate.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -91,6 +92,16 @@ TEST(Validate, TextureAddressesGoByTheirStages) {
   EXPECT_NE(error_of("ps_1_2\ntex t0\ntexbem t1, t0\ntexbem t1, t0\nmov r0, t1\n"), "no error");
   EXPECT_EQ(error_of("ps_1_1\ntex t0\ntex t2\nmov r0, t2\n"), "no error");
   EXPECT_EQ(error_of("ps_1_4\ntexld r1, t1\ntexld r0, t0\nmov r0, r1\n"), "no error");
+}
+
+TEST(Validate, APhaseHasSixTextureAddressInstructions) {
+  std::string kills;
+  for (int i = 0; i < 6; ++i) kills += fmt::format("texkill t{}\n", i % 2);
+  const std::string end = "mov r0, v0\n";
+  EXPECT_EQ(error_of("ps_1_4\n" + kills + end), "no error");
+  EXPECT_EQ(error_of("ps_1_4\n" + kills + "texkill t0\n" + end),
+            "p:8:1: more than 6 texture address instructions in a phase");
+  EXPECT_EQ(error_of("ps_1_4\ntexld r0, t0\nphase\n" + kills + end), "no error");
 }
 
 TEST(Validate, TexcrdWritesTwoComponentsByDwOnly) {

@@ -104,8 +104,8 @@ TEST(VertexOracle, InstructionsOfTheNv20BitForBit) {
         << test;
 }
 
-// exp and log are macros of Direct3D, which the vectors leave out: on an NV20 they are the correct result with
-// its one NaN, and without denormals on the way in or out.
+// exp and log are macros of Direct3D, which the vectors leave out: on an NV20 they are the correct result
+// with its one NaN, and without denormals on the way in or out.
 TEST(VertexOracle, ExponentAndLogarithmOfTheNv20KeepItsNumbers) {
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
   const auto result = [](const char* operation, float argument) {

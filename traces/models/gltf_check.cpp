@@ -56,9 +56,9 @@ void expect_plain_gltf(const std::filesystem::path& path) {
   const json file = json::parse(json_text(path), nullptr, false);
   for (const json& name : at(file, "extensionsRequired"))
     if (name.is_string() && !is_harmless(name.get_ref<const std::string&>()))
-      throw UserError(path.string(), 0,
-                      fmt::format("requires the extension {}, expected a mesh that can be read without it",
-                                  name.dump()));
+      throw UserError(
+          path.string(), 0,
+          fmt::format("requires the extension {}, expected a mesh that can be read without it", name.dump()));
   constexpr int kFloat = 5126;  // GL_FLOAT
   for (const json& mesh : at(file, "meshes"))
     for (const json& primitive : at(mesh, "primitives"))

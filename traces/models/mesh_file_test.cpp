@@ -81,9 +81,12 @@ TEST_F(MeshFileTest, WhatFindsNoPlaceIsCounted) {
 }
 
 TEST_F(MeshFileTest, ASurfelAloneIsAsLargeAsTheMesh) {
-  const Scene scene = scene_of("square.obj", kSquare, "count = 1\n");
-  ASSERT_EQ(scene.surfels.size(), 1u);
-  EXPECT_NEAR(scene.surfels[0].radius, std::sqrt(1 / std::numbers::pi), 1e-6);
+  for (const std::string_view square :
+       {kSquare, std::string_view("v 5 7 2\nv 6 7 2\nv 6 8 2\nv 5 8 2\nf 1 2 3 4\n")}) {
+    const Scene scene = scene_of("square.obj", square, "count = 1\n");
+    ASSERT_EQ(scene.surfels.size(), 1u);
+    EXPECT_NEAR(scene.surfels[0].radius, std::sqrt(1 / std::numbers::pi), 1e-6);
+  }
   EXPECT_EQ(parse_scene("[surfels]\ngenerator = \"sphere\"\ncount = 1\n", "s.toml").surfels.size(), 1u);
 }
 

@@ -81,9 +81,11 @@ TEST(IssueSlots, TheDriverKeepsEveryDependence) {
 }
 
 TEST(IssueSlots, MacrosTakeTheirSlots) {
-  const std::tuple<const char*, std::size_t, ComponentMask> macros[] = {
-      {"m4x4 r1, r0, c0\n", 4, 0xf},     {"m4x3 r1.xyz, r0, c0\n", 3, 0xf}, {"m3x4 r1, r0, c0\n", 4, 0x7},
-      {"m3x3 r1.xyz, r0, c0\n", 3, 0x7}, {"m3x2 r1.xy, r0, c0\n", 2, 0x7}};
+  const std::tuple<const char*, std::size_t, ComponentMask> macros[] = {{"m4x4 r1, r0, c0\n", 4, 0xf},
+                                                                        {"m4x3 r1.xyz, r0, c0\n", 3, 0xf},
+                                                                        {"m3x4 r1, r0, c0\n", 4, 0x7},
+                                                                        {"m3x3 r1.xyz, r0, c0\n", 3, 0x7},
+                                                                        {"m3x2 r1.xy, r0, c0\n", 2, 0x7}};
   for (const auto& [text, rows, reads] : macros) {
     const auto slots = issue_slots(program(text), plain());
     ASSERT_EQ(slots.size(), rows) << text;
