@@ -9,8 +9,8 @@
 
 #include "traces/models/mesh_sample.h"
 
-// Priority-based stratified sampling of a mesh (hybrid scenes, section 3): points spread evenly, and exactly
-// as many as asked for.
+// Priority-based stratified sampling of a mesh (hybrid scenes, section 3): points spread by priority, and
+// exactly as many as asked for.
 namespace splatscope::traces {
 
 // A leaf of the tree, as the priority and the distribution see it.
