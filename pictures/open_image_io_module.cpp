@@ -35,7 +35,10 @@ std::optional<Decoded<Value>> read(const Source& source, std::size_t most_channe
     memory.emplace(const_cast<std::byte*>(source.bytes->data()), source.bytes->size());
   OIIO::ImageSpec as_stored;
   as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by their alpha
-  const auto input = OIIO::ImageInput::open(source.name, &as_stored, memory ? &*memory : nullptr);
+  OIIO::Filesystem::IOProxy* proxy = memory ? &*memory : nullptr;
+  if (proxy)
+    as_stored.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);  // also asked of the configuration
+  const auto input = OIIO::ImageInput::open(source.name, &as_stored, proxy);
   if (!input) {
     OIIO::geterror();  // else the library prints it at exit
     return std::nullopt;

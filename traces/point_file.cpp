@@ -102,7 +102,7 @@ void check_size(const PlyHeader& header, const PlyElement& vertex, std::uintmax_
 
 // assimp scales the values of other types by what is not their range.
 void check_mesh_colors(const PlyHeader& header, const std::string& file) {
-  constexpr std::string_view kColors[] = {"red", "green", "blue"};
+  constexpr std::string_view kColors[] = {"red", "green", "blue", "r", "g", "b"};  // of assimp's
   constexpr PlyType kTypes[] = {PlyType::uint8, PlyType::uint16, PlyType::float32, PlyType::float64};
   for (const PlyElement& element : header.elements)
     for (const PlyProperty& property : element.properties)

@@ -254,6 +254,27 @@ TEST_F(PointFileTest, SurfelsThatCannotBeDrawnAreCounted) {
   EXPECT_EQ(more.surfels[0].normal, glm::vec3(1, 0, 0));
 }
 
+// Neither for the camera nor for the radii of others.
+TEST_F(PointFileTest, SurfelsWithoutANormalCountForNothing) {
+  const auto scene = [&](int count, const std::string& rows) {
+    return scene_of(
+        fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+                    "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+                    "end_header\n{}",
+                    count, rows));
+  };
+  std::string rows;
+  for (int i = 0; i < 25; ++i) rows += fmt::format("{} {} 0 0 0 1\n", i % 5, i / 5);
+  const Scene without = scene(25, rows);
+  const Scene with = scene(28, "2.1 2 0 0 0 0\n2 2.1 0 0 0 0\n" + rows + "100 0 50 0 0 0\n");
+  EXPECT_EQ(with.skipped.zero_normal, 3u);
+  EXPECT_EQ(with.camera.eye, without.camera.eye);
+  EXPECT_EQ(with.camera.far, without.camera.far);
+  ASSERT_EQ(with.surfels.size(), without.surfels.size());
+  for (std::size_t i = 0; i < with.surfels.size(); ++i)
+    EXPECT_EQ(with.surfels[i].radius, without.surfels[i].radius) << i;
+}
+
 TEST_F(PointFileTest, RadiusAndNormalAreEstimated) {
   std::string rows;
   constexpr int kEdge = 9;

@@ -76,7 +76,12 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
   const auto leave_out_zero_radii = [&] {
     result.skipped.zero_radius += std::erase_if(surfels, [](const Surfel& s) { return !(s.radius > 0); });
   };
+  const auto leave_out_zero_normals = [&] {
+    result.skipped.zero_normal = std::erase_if(surfels, [](Surfel& s) { return !normalize(s); });
+  };
+  // Before they are neighbours of others, or frame the camera.
   if (points.has_radii) leave_out_zero_radii();
+  if (points.has_normals) leave_out_zero_normals();
   result.skipped.duplicate = erase_duplicates(surfels);
   if (!points.has_radii) {
     estimate_radii(surfels, settings.surfels.neighbours);
@@ -84,8 +89,10 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
   }
   frame_camera(surfels, corner_reach(settings.splatting), {settings.width, settings.height},
                settings.camera_given, result.camera);
-  if (!points.has_normals) estimate_normals(surfels, settings.surfels.neighbours, result.camera.eye);
-  result.skipped.zero_normal = std::erase_if(surfels, [](Surfel& s) { return !normalize(s); });
+  if (!points.has_normals) {
+    estimate_normals(surfels, settings.surfels.neighbours, result.camera.eye);
+    leave_out_zero_normals();
+  }
   for (Surfel& s : surfels) s.color = glm::clamp(s.color, 0.0f, 1.0f);
   result.average_spacing = average_spacing(surfels);
   // A single surfel has no neighbour; any offset will do for it.

@@ -197,6 +197,30 @@ TEST_F(MeshFileTest, ColoursOfATextureAreNotMultipliedByItsAlpha) {
   for (const Surfel& s : scene.surfels) EXPECT_EQ(s.color, glm::vec3(1, 0, 0));
 }
 
+// The same in a file of its own within a mesh: a PNG of one texel.
+TEST_F(MeshFileTest, ATextureMayBeInTheMeshsOwnFile) {
+  const Scene scene = scene_of("m.gltf",
+                               R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"material": 0,
+      "attributes": {"POSITION": 0, "TEXCOORD_0": 1}}]}],
+    "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+    "textures": [{"source": 0}], "images": [{"uri": "data:image/png;base64,)"
+                               "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAA"
+                               "DUlEQVR4nGP4z8DgAAAEQQFAjv0/EgAAAABJRU5ErkJggg=="
+                               R"("}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [1, 1, 0]},
+                  {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+    "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)"
+                               "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAA"
+                               "gD8AAAAAAAAAPwAAAD8AAAA/AAAAPwAAAD8AAAA/"
+                               R"("}]})",
+                               "count = 10\nshading = 0\n");
+  EXPECT_EQ(scene.mesh.textures_unreadable, 0u);
+  for (const Surfel& s : scene.surfels) EXPECT_EQ(s.color, glm::vec3(1, 0, 0));
+}
+
 // Each part by itself: a texture needs places in it, and colours of another part are none of its own.
 TEST_F(MeshFileTest, PartsHaveColoursOfTheirOwn) {
   file("t.ppm", std::string_view("P6\n1 1\n255\n\xff\0\0", 14));
@@ -271,6 +295,9 @@ TEST_F(MeshFileTest, FilesOfMaterialsThatAreMissingAreCounted) {
   EXPECT_EQ(missing("m.obj", "mtllib gone.mtl\n"), 1u);
   EXPECT_EQ(missing("m.obj", "mtllib m.mtl\n"), 1u);
   EXPECT_EQ(missing("m.obj", "mtllib gone.mtl\nmtllib here.mtl\nmtllib lost.mtl\n"), 2u);
+  std::filesystem::create_directory(folder_ / "sub");
+  file("sub/other.mtl", "newmtl blue\nKd 0 0 1\n");
+  EXPECT_EQ(missing("m.obj", "mtllib sub\\other.mtl\n"), 0u) << "as Windows writes it";
   EXPECT_EQ(missing("here.obj", "mtllib gone.mtl\n"), 1u) << "assimp takes here.mtl for it";
 }
 
@@ -397,6 +424,8 @@ TEST_F(MeshFileTest, AnOffFileIsWhatItsHeaderSays) {
   for (const char* line : {" \n", "# the last\n"})
     EXPECT_EQ(error(vertices + line + "3 0 2 1\n"),
               "x.off:7: blanks or a comment between the rows, expected a line of numbers");
+  EXPECT_EQ(error("CNOFF\n3 1 0\n" + rows),
+            "x.off:1: colours beside normals, which assimp reads one number off, expected one of them");
   EXPECT_EQ(error("off\n3 1 0\n" + rows), "x.off:1: the first word is not \"OFF\", expected an OFF file");
   EXPECT_EQ(error("nOFF 4\n3 1 0\n" + rows), "x.off:1: a wrong number of dimensions, expected 1 to 3");
 }

@@ -76,8 +76,9 @@ class OffCheck {
       return true;
     };
     take("ST", 2);
-    take("C", 4);  // fewer in other readers
-    take("N", 3);
+    const bool colors = take("C", 4);  // fewer in other readers
+    if (take("N", 3) && colors)
+      fail("colours beside normals, which assimp reads one number off", "one of them");
     take("4", 1);
     const bool counted = take("n", 0);
     if (!known || !keyword.empty()) fail("the first word is not \"OFF\"", "an OFF file");
