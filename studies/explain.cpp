@@ -167,11 +167,15 @@ std::string text_of(const Vec4& color) {
   return fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", color[0], color[1], color[2], color[3]);
 }
 
-// What the frame or a surface holds: in 8 bits the numbers themselves.
+// What the frame or a surface holds: in 8 bits the numbers themselves, else enough digits to tell any two
+// apart.
 std::string stored_text(const Vec4& color, FrameFormat format) {
-  if (format != FrameFormat::unorm8) return text_of(color);
   std::string text;
-  for (const float c : color) text += fmt::format("{}{:>3}", text.empty() ? "" : " ", std::lround(255 * c));
+  for (const float c : color) {
+    if (!text.empty()) text += ' ';
+    text +=
+        format == FrameFormat::unorm8 ? fmt::format("{:>3}", std::lround(255 * c)) : fmt::format("{:.9g}", c);
+  }
   return text;
 }
 
@@ -311,7 +315,7 @@ std::string explain_vertex(const Trace& trace, const NumberFormats& formats, std
   std::istringstream commands("continue\nprint\n");
   std::ostringstream out;
   debugger.run(commands, "--vertex", out, false);
-  return fmt::format("vertex {} of draw {}, by {}\n", vertex, number, shader.name) + out.str();
+  return fmt::format("vertex {} of draw {}, by {}\n", index, number, shader.name) + out.str();
 }
 
 }  // namespace splatscope::studies

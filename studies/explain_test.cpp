@@ -1,5 +1,6 @@
 #include "studies/explain.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -210,6 +211,25 @@ TEST(Explain, VertexProgramsAreTold) {
   EXPECT_NE(std::string::npos, text.find("vertex 5 of draw 1, by splat_ewa.vs"));
   EXPECT_NE(std::string::npos, text.find("end of the program"));
   EXPECT_NE(std::string::npos, text.find("oPos"));
+  Trace later = trace;  // the same vertex, by the index that a script would give again
+  std::get<Draw>(later.commands[2]).base_vertex = 3;
+  const std::string moved = explain_vertex(later, {}, 1, 2);
+  EXPECT_NE(std::string::npos, moved.find("vertex 2 of draw 1, by splat_ewa.vs"));
+  EXPECT_EQ(moved.substr(moved.find('\n')), text.substr(text.find('\n')));
+}
+
+// A splat adds less than four decimals show.
+TEST(Explain, WhatIsStoredIsToldInFull) {
+  const Trace trace = small_trace("ewa-per-surfel");
+  NumberFormats floats;
+  floats.frame = FrameFormat::float32;
+  const std::vector<PixelStep> steps = explain_pixel(trace, floats, 32, 24);
+  const std::string text = describe(trace, floats, steps);
+  const auto drawn = std::ranges::find_if(steps, [](const PixelStep& step) { return step.after[0] > 0; });
+  ASSERT_NE(drawn, steps.end());
+  EXPECT_NE(text.find(fmt::format("{:.9g} {:.9g} {:.9g}", drawn->after[0], drawn->after[1], drawn->after[2])),
+            std::string::npos)
+      << text;
 }
 
 // A machine whose RCP and RSQ have few bits is explained by these.

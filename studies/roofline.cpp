@@ -33,7 +33,7 @@ std::vector<Ceiling> ceilings(const Machine& machine, const sim::Result& timing)
                                {"memory", "bytes", "on the data buses of video memory",
                                 total(timing, "memory", "data_clocks") * memory_clock,
                                 core * memory_clock * machine.memory.channels, 0, 0},
-                               {"bus", "bytes", "that AGP carries in the clocks with data",
+                               {"bus", "bytes", "that AGP carries to the GPU in the clocks with data",
                                 total(timing, "agp", "data_clocks") * bus_clock, bus * bus_clock, 0, 0}};
   for (Ceiling& c : list) {
     c.share = c.demand / c.peak / timing.seconds;
