@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -37,6 +38,21 @@ class Unmarked : public Assimp::IOStream {
   std::unique_ptr<Assimp::IOStream> whole_;
 };
 
+// %20 and the like as the bytes that they stand for.
+std::string percent_decoded(std::string_view text) {
+  std::string bytes;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::string_view digits = text.substr(i + 1, 2);
+    unsigned byte = 0;
+    const char* const end = digits.data() + digits.size();
+    const bool is_code =
+        text[i] == '%' && digits.size() == 2 && std::from_chars(digits.data(), end, byte, 16).ptr == end;
+    bytes += is_code ? static_cast<char>(byte) : text[i];
+    if (is_code) i += 2;
+  }
+  return bytes;
+}
+
 }  // namespace
 
 std::string ending_of(const std::filesystem::path& path) {
@@ -45,11 +61,24 @@ std::string ending_of(const std::filesystem::path& path) {
   return ending;
 }
 
-Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
+std::filesystem::path file_named(std::string name, const std::filesystem::path& folder) {
+  std::ranges::replace(name, '\\', '/');
+  std::filesystem::path as_it_stands = folder / name, decoded = folder / percent_decoded(name);
+  std::error_code error;
+  const bool is_uri =
+      !std::filesystem::exists(as_it_stands, error) && std::filesystem::exists(decoded, error);
+  return is_uri ? decoded : as_it_stands;
+}
+
+Assimp::IOStream* AssimpFiles::Open(const char* name, const char* mode) {
+  const std::string folder = (mesh_.parent_path() / "").string();
+  std::string_view in_folder = name;
+  if (in_folder.starts_with(folder)) in_folder.remove_prefix(folder.size());
+  const std::string file = name == mesh_ ? name : file_named(std::string(in_folder), folder).string();
   files_.emplace_back(file);
   if (!text_.empty() && file == mesh_)
     return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
-  std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
+  std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file.c_str(), mode));
   if (!stream || !may_be_marked(file)) return stream.release();
   char start[kByteOrderMark.size()];
   const bool marked =

@@ -48,16 +48,10 @@ struct Materials {
   }
 };
 
-// The file of a texture that is not in the mesh's own.
-std::filesystem::path texture_file(std::string name, const std::filesystem::path& folder) {
-  std::ranges::replace(name, '\\', '/');
-  return folder / name;
-}
-
 std::optional<TextureImage> read_texture_of(const aiScene& scene, const aiString& name,
                                             const std::filesystem::path& folder) {
   const aiTexture* embedded = scene.GetEmbeddedTexture(name.C_Str());
-  if (!embedded) return read_texture(texture_file(name.C_Str(), folder));
+  if (!embedded) return read_texture(file_named(name.C_Str(), folder));
   if (embedded->mHeight == 0)
     return read_texture(
         std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)),
@@ -138,7 +132,7 @@ class Reader {
           aiReturn_SUCCESS)
         continue;
       if (!scene_.GetEmbeddedTexture(name.C_Str()))
-        file_.files.push_back(texture_file(name.C_Str(), path_.parent_path()));
+        file_.files.push_back(file_named(name.C_Str(), path_.parent_path()));
     }
   }
 
@@ -224,8 +218,7 @@ std::size_t missing_materials(const std::vector<std::filesystem::path>& files, s
   std::set<std::filesystem::path> missing;
   for (const std::filesystem::path& name : files) {
     std::error_code error;
-    if (ending_of(name) == ".mtl" && !std::filesystem::is_regular_file(name, error) &&
-        !std::filesystem::is_regular_file(texture_file(name.string(), {}), error))
+    if (ending_of(name) == ".mtl" && !std::filesystem::is_regular_file(name, error))
       missing.insert(name.lexically_normal());
   }
   if (missing.size() > 1) missing.erase(mesh.replace_extension(".mtl").lexically_normal());

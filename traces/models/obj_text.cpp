@@ -79,11 +79,16 @@ class ObjText {
       if (at > begin) leave_out(begin, at);
       is_place_ = keyword == "v";
       has_numbers_ = is_place_ || keyword == "vt" || keyword == "vn";
+      is_element_ = keyword == "f" || keyword == "fo" || keyword == "l" || keyword == "p";
       numbers_ = 0;
       at += keyword.size();
     }
     continued_ = goes_on;
-    if (has_numbers_) read_numbers(at, end);
+    if (has_numbers_ || is_element_) {
+      const std::size_t comment = std::min(text_.substr(0, end).find('#', at), end);
+      if (has_numbers_) read_numbers(at, comment);
+      if (comment < end) leave_out(comment, end);
+    }
     if (is_place_ && !continued_ && numbers_ != 3 && numbers_ != 4 && numbers_ != 6)
       fail(fmt::format("a vertex of {} number{}", numbers_, numbers_ == 1 ? "" : "s"), "3, 4 or 6");
     if (!is_place_ || continued_) return;
@@ -96,10 +101,6 @@ class ObjText {
   void read_numbers(std::size_t at, std::size_t end) {
     for (std::string_view number; !(number = word(at, end)).empty(); at += number.size()) {
       const char first = number.front();
-      if (first == '#') {
-        leave_out(at, end);
-        return;
-      }
       ++numbers_;
       if (first == '-' || first == '+' || (first >= '0' && first <= '9')) continue;
       if (!is_number(number)) fail(fmt::format("\"{}\" is no number", number.substr(0, 64)), "a number");
@@ -110,7 +111,7 @@ class ObjText {
 
   std::string_view text_, file_;
   int line_ = 0;
-  bool continued_ = false, has_numbers_ = false, is_place_ = false;
+  bool continued_ = false, has_numbers_ = false, is_place_ = false, is_element_ = false;
   std::optional<bool> colored_;  // the vertices before
   std::size_t numbers_ = 0;      // of the line
   std::string result_;
