@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -86,6 +88,23 @@ TEST(Framing, ThePlaneKeepsItsCamera) {
   const Scene scene = parse_scene("[surfels]\ncolumns = 4\nrows = 4\n", "s.toml");
   EXPECT_EQ(scene.camera.eye, glm::dvec3(0, 70, 225));
   EXPECT_EQ(scene.camera.far, 1000);
+}
+
+// Eq. 14 and 12: a square across the normal, sqrt(2c) sigma radii from its middle to its sides.
+TEST(Framing, CornersOfASplatLieWhereItsDomainEnds) {
+  const Surfel surfel{{1, 2, 3}, {0.6f, 0, 0.8f}, 0.5f, {}};
+  Splatting splatting;
+  splatting.cutoff = 2;
+  splatting.sigma = 1.5;
+  const auto corners = quad_corners(surfel, splatting);
+  const double half_side = 2 * 1.5 * 0.5;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 out = corners[i] - glm::dvec3(surfel.position);
+    EXPECT_NEAR(glm::dot(out, glm::dvec3(surfel.normal)), 0, 1e-6) << i;
+    EXPECT_NEAR(glm::length(out), std::numbers::sqrt2 * half_side, 1e-6) << i;
+    EXPECT_NEAR(glm::length(corners[i] - corners[(i + 1) % corners.size()]), 2 * half_side, 1e-6) << i;
+  }
+  EXPECT_NEAR(corner_reach(splatting) * surfel.radius, std::numbers::sqrt2 * half_side, 1e-12);
 }
 
 }  // namespace
