@@ -45,8 +45,10 @@ void print_weights(const traces::RecordCounts& counts) {
       counts.weights_captured, counts.weights_at_edges, counts.weights_by_default,
       counts.weights_outside_box);
   if (counts.weights_captured == 0 && counts.weights_by_default > 0)
-    std::cout << "  warning: no view of the capture shows a surfel, so no weight is captured and the picture "
-                 "may be black: the splats may be too faint for the frame buffer\n";
+    std::cout
+        << "  warning: no view of the capture shows a surfel, so no weight is captured and the picture is "
+           "not normalised: the splats may be too faint for the frame buffer (splatting.sigma, "
+           "splatting.gamma), or the views too few (capture.views)\n";
 }
 
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {

@@ -31,9 +31,8 @@ constexpr std::int64_t kMostPixelsKept = 1 << 18;
 // Windows of one piece of a triangle in one band.
 struct Band {
   std::size_t piece = 0;
-  bool noted = false;      // its quads go into the work record
-  std::size_t count = 0;   // of windows
-  std::size_t passed = 0;  // of their pixels
+  bool noted = false;     // its quads go into the work record
+  std::size_t count = 0;  // of windows
 };
 
 using Windows = std::span<raster::Window, raster::kMaxWindows>;
@@ -193,8 +192,7 @@ class LaterStages {
 
  private:
   static void push(Batch& batch, const Band& band, std::span<const raster::Window> windows) {
-    batch.pipe.push_band(batch.geometry.piece(band.piece), windows, band.passed,
-                         band.noted ? batch.work : nullptr);
+    batch.pipe.push_band(batch.geometry.piece(band.piece), windows, band.noted ? batch.work : nullptr);
   }
 
   void do_at_once(Batch& batch) {
@@ -267,7 +265,7 @@ class LaterStages {
         clear_tiles->note(windows.first(counts.windows), static_cast<std::uint32_t>(triangle),
                           draw.work.clear_tiles);
       if (noted ? counts.windows != 0 : draw.bindings.draw.state.color_write && counts.passed != 0)
-        take(Band{piece, noted, counts.windows, counts.passed});
+        take(Band{piece, noted, counts.windows});
     }
   }
 

@@ -13,8 +13,6 @@ namespace {
 static_assert(FragmentPipe::kCapacity == pixel::kBatch);
 static_assert(raster::kFragmentStride == pixel::kLaneStride);
 
-constexpr unsigned kQuadRows = raster::kWindow / 2;
-
 }  // namespace
 
 FragmentPipe::FragmentPipe(const raster::VertexAttributes& vertices, std::uint32_t width,
@@ -37,30 +35,21 @@ void FragmentPipe::bind(const DrawBindings& bindings) {
   batch_ = {};  // what no attribute and no texture gives is 0
 }
 
+// Window by window, as a rasteriser that visits tiles sends their quads.
 void FragmentPipe::push_band(const raster::Piece& piece, std::span<const raster::Window> windows,
-                             std::size_t passed, DrawWork* work) {
+                             DrawWork* work) {
   if (work != work_) flush();  // fragments of one batch are all noted, or none
   work_ = work;
-  if (passed <= kCapacity) {  // nearly every band
-    if (count_ + passed > kCapacity) flush();
-    return push_rows(piece, windows, 0, kQuadRows);
-  }
-  for (unsigned row = 0; row < kQuadRows; ++row) {
-    for (const raster::Window& window : windows) {
-      if (count_ + static_cast<std::size_t>(std::popcount(raster::Window::row(window.passed, row))) >
-          kCapacity)
-        flush();
-      push_rows(piece, {&window, 1}, row, row + 1);
-    }
+  for (const raster::Window& window : windows) {
+    if (count_ + static_cast<std::size_t>(std::popcount(window.passed)) > kCapacity) flush();
+    if (work_ != nullptr) note_quads(window);
+    if (bindings_->draw.state.color_write) push_window(piece, window);
   }
 }
 
-void FragmentPipe::push_rows(const raster::Piece& piece, std::span<const raster::Window> windows,
-                             unsigned first_row, unsigned end_row) {
-  if (work_ != nullptr) note_quads(windows, first_row, end_row);
-  if (!bindings_->draw.state.color_write) return;
+void FragmentPipe::push_window(const raster::Piece& piece, const raster::Window& window) {
   const std::size_t first = count_;
-  count_ = raster::append_places(windows, first_row, end_row, count_, places_);
+  count_ = raster::append_places(window, count_, places_);
   if (count_ == first) return;
   if (piece_count_ == 0 || pieces_[piece_count_ - 1].piece.setup != piece.setup)
     pieces_[piece_count_++] = {piece, first, count_};
@@ -68,26 +57,20 @@ void FragmentPipe::push_rows(const raster::Piece& piece, std::span<const raster:
 }
 
 // The quads, and which of them each fragment that comes next is of.
-void FragmentPipe::note_quads(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row) {
+void FragmentPipe::note_quads(const raster::Window& window) {
   std::size_t fragment = count_;
-  for (unsigned row = first_row; row < end_row; ++row) {
-    for (const raster::Window& window : windows) {
-      std::uint32_t covered = raster::Window::row(window.covered, row);
-      const std::uint32_t passed = raster::Window::row(window.passed, row);
-      while (covered != 0) {
-        const auto column = static_cast<unsigned>(std::countr_zero(covered)) / 4;
-        const auto covered_here = static_cast<std::uint8_t>(covered >> 4 * column & 0xfu);
-        const auto passed_here = static_cast<std::uint8_t>(passed >> 4 * column & 0xfu);
-        covered &= ~(0xfu << 4 * column);
-        // Of all four; those that did not pass are overwritten.
-        std::fill_n(quads_.begin() + static_cast<std::ptrdiff_t>(fragment), 4,
-                    static_cast<std::uint32_t>(work_->quads.size()));
-        fragment += static_cast<std::size_t>(std::popcount(passed_here));
-        work_->quads.push_back({static_cast<std::uint16_t>(window.x / 2 + static_cast<int>(column)),
-                                static_cast<std::uint16_t>(window.y / 2 + static_cast<int>(row)),
-                                covered_here, passed_here, 0});
-      }
-    }
+  for (std::uint64_t covered = window.covered; covered != 0;) {
+    const auto quad = static_cast<unsigned>(std::countr_zero(covered)) / 4;
+    const auto covered_here = static_cast<std::uint8_t>(covered >> 4 * quad & 0xfu);
+    const auto passed_here = static_cast<std::uint8_t>(window.passed >> 4 * quad & 0xfu);
+    covered &= ~(std::uint64_t{0xf} << 4 * quad);
+    // Of all four; those that did not pass are overwritten.
+    std::fill_n(quads_.begin() + static_cast<std::ptrdiff_t>(fragment), 4,
+                static_cast<std::uint32_t>(work_->quads.size()));
+    fragment += static_cast<std::size_t>(std::popcount(passed_here));
+    work_->quads.push_back({static_cast<std::uint16_t>(window.x / 2 + raster::Window::x_of(4 * quad) / 2),
+                            static_cast<std::uint16_t>(window.y / 2 + raster::Window::y_of(4 * quad) / 2),
+                            covered_here, passed_here, 0});
   }
 }
 

@@ -26,18 +26,16 @@ class FragmentPipe {
   // From now on, with nothing in it, it takes fragments of this draw, until it is bound to the next.
   void bind(const DrawBindings& bindings);
 
-  // The windows of one band of a piece, in which `passed` pixels passed; the piece stays where it is until
-  // all is flushed. `work`: where its quads are noted, with the texel blocks that each one reads; or null.
-  void push_band(const raster::Piece& piece, std::span<const raster::Window> windows, std::size_t passed,
-                 DrawWork* work);
+  // The windows of one band of a piece, which stays where it is until all is flushed. `work`: where its quads
+  // are noted, with the texel blocks that each one reads; or null.
+  void push_band(const raster::Piece& piece, std::span<const raster::Window> windows, DrawWork* work);
 
   // Shades and gives away all there is.
   void flush();
 
  private:
-  void push_rows(const raster::Piece& piece, std::span<const raster::Window> windows, unsigned first_row,
-                 unsigned end_row);
-  void note_quads(std::span<const raster::Window> windows, unsigned first_row, unsigned end_row);
+  void push_window(const raster::Piece& piece, const raster::Window& window);
+  void note_quads(const raster::Window& window);
   void sample(std::size_t count);
   void note_blocks(std::span<const std::uint32_t> blocks);
 

@@ -338,6 +338,21 @@ TEST(Render, EachPresentEndsAFrame) {
   EXPECT_EQ(reds({red, Present{}, Present{}, Clear{}, Present{}}), (std::vector<float>{1, 1, 0}));
 }
 
+// As a rasteriser walks tiles, so that a wide triangle comes back to no line of a cache that it has left.
+TEST(Render, QuadsOfATriangleComeWindowByWindow) {
+  Trace trace = white_triangles<12>({-1, 1, 0, 1, 3, 1, 0, 1, -1, -3, 0, 1}, CullMode::none);
+  trace.width = trace.height = 64;
+  const Rendered rendered = render(trace, {});
+  std::vector<std::pair<int, int>> windows;
+  for (const QuadWork& quad : rendered.work[0].quads) {
+    const std::pair window(quad.y / 4, quad.x / 4);
+    if (windows.empty() || windows.back() != window) windows.push_back(window);
+  }
+  EXPECT_EQ(rendered.work[0].quads.size(), 32u * 32);
+  EXPECT_EQ(windows.size(), 8u * 8);
+  EXPECT_TRUE(std::ranges::is_sorted(windows));
+}
+
 TEST(Render, NanDoesNotReachAFloatFrameBuffer) {
   RenderOptions options;
   options.formats.frame = FrameFormat::float32;

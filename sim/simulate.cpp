@@ -1,8 +1,11 @@
 #include "sim/simulate.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <iterator>
+#include <limits>
+#include <utility>
 
 namespace splatscope::sim {
 namespace {
@@ -54,6 +57,18 @@ Result run(SimulatedMachine& machine, const Trace& trace, const std::function<vo
 }
 
 }  // namespace
+
+const UnitBooks& Result::busiest() const {
+  const auto is_vertex_unit = [](const UnitBooks& unit) {
+    return unit.name.starts_with("vertex") && unit.name.back() >= '0' && unit.name.back() <= '9';
+  };
+  Cycle all_vertex_units = std::numeric_limits<Cycle>::max();
+  for (const UnitBooks& unit : units)
+    if (is_vertex_unit(unit)) all_vertex_units = std::min(all_vertex_units, unit.busy);
+  return *std::ranges::max_element(units, {}, [&](const UnitBooks& unit) {
+    return std::pair(is_vertex_unit(unit) ? all_vertex_units : unit.busy, unit.busy);
+  });
+}
 
 UnitBooks named_books(const SimulatedMachine& machine, const Unit& unit, const Books& books) {
   UnitBooks entry;

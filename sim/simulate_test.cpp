@@ -176,6 +176,23 @@ TEST(Simulate, ATextureThatNoProgramSamplesCostsNothing) {
   EXPECT_EQ(units_without(bound), (std::vector<std::string>{"agp", "texture"}));
 }
 
+// The first vertex unit is busy wherever there is work at all.
+TEST(Simulate, VertexUnitsAreBusyWhereAllOfThemAre) {
+  Result result;
+  const auto busiest = [&](Cycle agp, Cycle vertex1) {
+    result.units.clear();
+    for (const auto& [name, busy] :
+         {std::pair("vertex_fetch", Cycle{10}), {"vertex0", 99}, {"vertex1", vertex1}, {"agp", agp}}) {
+      UnitBooks& books = result.units.emplace_back();
+      books.name = name;
+      books.busy = busy;
+    }
+    return result.busiest().name;
+  };
+  EXPECT_EQ(busiest(98, 53), "agp");
+  EXPECT_EQ(busiest(52, 53), "vertex0");
+}
+
 TEST(Simulate, ASecondVertexUnitHalvesAVertexBoundDraw) {
   const RandomTrace made = simple_trace(1200);
   Machine machine = machine::load("geforce4-ti4400");

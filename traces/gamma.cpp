@@ -114,7 +114,8 @@ double suitable_gamma(std::span<const Surfel> surfels, const Splatting& splattin
   if (surfels.empty()) return kPaperGamma;
   const std::vector<Surfel> places = places_about(surfels, (surfels.size() + kAsked - 1) / kAsked);
   std::vector<double> sums = filter_sums(surfels, splatting, places);
-  const auto high = sums.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sums.size() - 1));
+  const auto high =
+      sums.begin() + static_cast<std::ptrdiff_t>(std::ceil(kShare * static_cast<double>(sums.size()))) - 1;
   std::ranges::nth_element(sums, high);
   return std::min(kPaperGamma, 1 / *high);
 }

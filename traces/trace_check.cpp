@@ -46,6 +46,7 @@ class Checker {
       where_ = fmt::format("program {}", i);
       programs_.push_back(check_program(trace_.programs[i]));
     }
+    where_ = "frame";
     in_range("number of frames", frame_ends(trace_).size(), 1, kMaxFrames);
     for (std::size_t i = 0; i < trace_.commands.size(); ++i) {
       stop_if_asked();

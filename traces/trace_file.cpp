@@ -251,9 +251,10 @@ Trace trace_of_bytes(std::span<const std::uint8_t> bytes, std::string_view file)
     throw UserError(file, 0, "is damaged or cut short, expected a whole trace file");
   const stored::Trace& stored_trace = *stored::GetTrace(bytes.data());
   if (stored_trace.version() == 0 || stored_trace.version() > kTraceVersion)
-    throw UserError(file, 0,
-                    fmt::format("is a trace of version {}, expected at most {} (a newer splatscope wrote it)",
-                                stored_trace.version(), kTraceVersion));
+    throw UserError(
+        file, 0,
+        fmt::format("is a trace of version {}, expected 1 to {}{}", stored_trace.version(), kTraceVersion,
+                    stored_trace.version() > kTraceVersion ? " (a newer splatscope wrote it)" : ""));
   Trace trace = Reader(file, bytes.size()).unpack(stored_trace);
   check_trace(trace, file);
   return trace;

@@ -212,7 +212,8 @@ TEST_F(TraceFile, NewerVersionIsRefusedByName) {
   auto* root = flatbuffers::GetMutableRoot<flatbuffers::Table>(bytes.data());
   ASSERT_TRUE(root->SetField<std::uint32_t>(stored::Trace::VT_VERSION, kTraceVersion + 1, 0));
   write_file(path_, bytes);
-  EXPECT_THAT(error_of([&] { read_trace(path_); }), HasSubstr("version 4, expected at most 3"));
+  EXPECT_THAT(error_of([&] { read_trace(path_); }),
+              HasSubstr("version 4, expected 1 to 3 (a newer splatscope wrote it)"));
 }
 
 // A few bytes must not unfold to gigabytes: many entries that name one and the same buffer.
@@ -288,7 +289,7 @@ std::vector<Breakage> breakages() {
        "source blend factor is 11"},
       {"cull", [](Trace&, Draw& d) { d.state.cull = CullMode(3); }, "cull mode is 3, expected 0 to 2"},
       {"frames", [](Trace& t, Draw&) { t.commands.resize(t.commands.size() + 1000, Present{}); },
-       "number of frames is 1001, expected 1 to 1000"},
+       "broken.trace: frame: number of frames is 1001, expected 1 to 1000"},
       {"dest", [](Trace&, Draw& d) { d.state.destination_factor = BlendFactor(255); }, "blend factor is 255"},
   };
 }

@@ -248,6 +248,17 @@ TEST(Gamma, IsThePapersForASquareGridAndLessWhereMoreSplatsOverlap) {
   EXPECT_GT(saturated, 0u) << "and not darker than it must be";
 }
 
+// Of fewer than a hundred places none may saturate: the larger sum of two decides.
+TEST(Gamma, LeavesNoneOfAFewPlacesToSaturate) {
+  Splatting splatting = parse_scene("", "plane.toml").splatting;
+  splatting.sigma = 0.3;
+  const std::vector<Surfel> surfels{{{0, 0, 0}, {0, 0, 1}, 1, {}}, {{0.1f, 0, 0}, {0, 0, 1}, 0.01f, {}}};
+  splatting.depth_offset = 0.1;
+  const std::vector<double> sums = filter_sums(surfels, splatting, surfels);
+  EXPECT_GT(sums[1], 1.5 * sums[0]);
+  EXPECT_LT(suitable_gamma(surfels, splatting), 0.8 / sums[0]);
+}
+
 // On a square grid 197 splats of radius 2 sqrt(2) overlap, and sum up to 1.960 (by hand: sum of
 // exp(-d.d/(4h.h)) over the grid within sqrt(8) sigma h, by 2 pi sigma^2).
 TEST(Gamma, CountsAllSplatsThatReachASurfel) {

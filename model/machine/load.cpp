@@ -109,12 +109,12 @@ const Parameter& require(std::string_view name, const Place& place) {
 }
 
 // Of a value for which a file says nothing else.
-Machine::Origin origin_without_source(std::string_view file) {
-  return {"stand-in", fmt::format("{}, without a source", file), ""};
+Machine::Origin origin_without_source(const Place& place) {
+  return {"stand-in", fmt::format("{}, without a source", place.file), "", place.line};
 }
 
 Machine::Origin read_origin(const toml::table& table, std::string_view name, std::string_view file) {
-  Machine::Origin origin = origin_without_source(file);
+  Machine::Origin origin = origin_without_source(place_of(table, file));
   for (const auto& [key, node] : table) {
     if (key == "value") continue;
     const Place place = place_of(node, file);
@@ -145,7 +145,7 @@ void read_parameter(Machine& machine, const std::string& name, const toml::node&
   const toml::table* table = node.as_table();
   if (!table) {
     assign(machine, parameter, node, place);
-    machine.origins[name] = origin_without_source(file);
+    machine.origins[name] = origin_without_source(place);
     return;
   }
   const toml::node* value = table->get("value");
@@ -156,11 +156,15 @@ void read_parameter(Machine& machine, const std::string& name, const toml::node&
   machine.origins[name] = read_origin(*table, name, file);
 }
 
-// Where one of these parameters was set: the option, else `file`.
+// Where one of these parameters was set: the option, else the line of `file`.
 Place set_by(const Machine& machine, std::initializer_list<std::string_view> names, std::string_view file) {
   for (const std::string_view name : names) {
     const auto origin = machine.origins.find(name);
     if (origin != machine.origins.end() && origin->second.confidence == kSet) return {origin->second.source};
+  }
+  for (const std::string_view name : names) {
+    const auto origin = machine.origins.find(name);
+    if (origin != machine.origins.end() && origin->second.line != 0) return {file, origin->second.line};
   }
   return {file};
 }
@@ -255,6 +259,7 @@ Machine parse(std::string_view text, std::string_view file) {
           .fail(fmt::format("no machine \"{}\", expected {}", name, fmt::join(names, " or ")));
     }
     machine = load(name);
+    for (auto& [parameter, origin] : machine.origins) origin.line = 0;
   }
   machine.name = std::string(stem(file));
   if (root.contains("base")) machine.title += fmt::format(", changed by {}", machine.name);
@@ -265,11 +270,12 @@ Machine parse(std::string_view text, std::string_view file) {
       continue;
     }
     const toml::table* group = node.as_table();
-    if (!group || key.str().empty() || known_keys(key.str()).empty()) {
-      place_of(node, file)
-          .fail(fmt::format("unknown key \"{}\", expected title, base or a group of {}", key.str(),
-                            known_keys("")));
+    const Place place = place_of(node, file);
+    if (key.str().empty() || known_keys(key.str()).empty()) {
+      place.fail(fmt::format("unknown key \"{}\", expected title, base or a group of {}", key.str(),
+                             known_keys("")));
     }
+    if (!group) place.fail(fmt::format("{} is a value, expected a table [{}]", key.str(), key.str()));
     for (const auto& [name, value] : *group) {
       read_parameter(machine, fmt::format("{}.{}", key.str(), name.str()), value, file);
     }
@@ -312,7 +318,7 @@ void assign(Machine& machine, std::string_view assignment, std::string_view opti
         fmt::format("{} has no valid value in \"{}\", expected {}", name, assignment, expected(parameter)));
   }
   assign(machine, parameter, *table.get("value"), place);
-  machine.origins[name] = {std::string(kSet), std::string(option), ""};
+  machine.origins[name] = {std::string(kSet), std::string(option), "", 0};
 }
 
 void check(const Machine& machine) {

@@ -135,6 +135,7 @@ struct Machine {
     std::string confidence = "default";
     std::string source;
     std::string fitted_to;
+    int line = 0;  // of the machine's own file that gave the value; 0: its base or an option did
   };
   std::map<std::string, Origin, std::less<>> origins;  // by parameter name; absent: default
 };

@@ -75,7 +75,10 @@ TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
   EXPECT_EQ(message_of("[vertex]\nunits = { confidence = \"fitted\" }\n"),
             "m.toml:2: vertex.units has no value, expected { value = ..., confidence = ..., source = ... }");
   EXPECT_EQ(message_of("title = \"a\"\n[memory]\nchannels = 3\n"),
-            "m.toml: memory.channels is 3, expected a power of two");
+            "m.toml:3: memory.channels is 3, expected a power of two");
+  EXPECT_EQ(message_of("base = \"geforce4-ti4400\"\n[texture]\nfill_bytes = 32\n"),
+            "m.toml:3: texture.fill_bytes is 32, expected at most texture.line_bytes (16)");
+  EXPECT_EQ(message_of("vertex = 2\n"), "m.toml:1: vertex is a value, expected a table [vertex]");
   EXPECT_TRUE(message_of("[shader]\nunits = 2\n")
                   .starts_with("m.toml:1: unknown key \"shader\", expected title, base or"));
   EXPECT_TRUE(message_of("title = \"a\"\n[vertex\n").starts_with("m.toml:2: "));

@@ -30,12 +30,11 @@ struct FragmentsOfPiece {
   std::size_t first, end;
 };
 
-// Appends the places x + 65536 y in the frame (at most 4096 a side) of the pixels that passed in rows of
-// quads `first_row`..`end_row`-1 (0 to 4) of windows side by side, quad by quad through all windows and then
-// row by row, behind the first `count` of `places`. What lies behind them is overwritten. Returns how many
-// there are then, at most kFragments.
-std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
-                          std::size_t count, std::span<std::uint32_t, kFragmentStride> places);
+// Appends the places x + 65536 y in the frame (at most 4096 a side) of a window's pixels that passed, quad by
+// quad, behind the first `count` of `places`. What lies behind them is overwritten. Returns how many there
+// are then, at most kFragments.
+std::size_t append_places(const Window& window, std::size_t count,
+                          std::span<std::uint32_t, kFragmentStride> places);
 
 // The numbers of the pixels (row-major, `width` in a row) at the first `count` places, and the
 // perspective-correct values of the attributes there; `pieces` in the order of their fragments. What lies

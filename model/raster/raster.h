@@ -40,10 +40,6 @@ struct TriangleSetup {
   bool covers = false;  // false: no pixel centre is inside
 };
 
-// A window coordinate on the subpixel grid, in units of 2^-(bits+1) pixel: truncated toward minus infinity,
-// as the NV2A does (tests/oracle/window_geometry.json).
-std::int64_t snap(double coordinate, int subpixel_bits);
-
 // Direct3D's driver adds half a step of the grid to window coordinates, which makes truncation round to
 // nearest.
 inline double driver_rounding(int subpixel_bits) {

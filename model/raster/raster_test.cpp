@@ -104,13 +104,6 @@ TEST(Raster, CoversWhatTheHardwareCovers) {
   }
 }
 
-TEST(Raster, TruncatesToTheSubpixelGrid) {
-  EXPECT_EQ(2 * (200 * 16 + 8), snap(200.5624, 4));
-  EXPECT_EQ(2 * (200 * 16 + 9), snap(200.5625, 4));
-  EXPECT_EQ(-2, snap(-0.01, 4));  // toward minus infinity
-  EXPECT_EQ(400, snap(200.99, 0));
-}
-
 // Triangles of a fan around an inner point meet without gap and without overlap, on every grid.
 TEST(Raster, SharedEdgesAreCoveredOnce) {
   std::mt19937 random(random_seed());

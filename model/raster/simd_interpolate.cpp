@@ -80,19 +80,16 @@ HWY_INLINE std::size_t append_lanes(std::uint32_t passed, std::size_t first_lane
   return hwy::PopCount(passed);
 }
 
-std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
-                          std::size_t count, std::span<std::uint32_t, kFragmentStride> places) {
+std::size_t append_places(const Window& window, std::size_t count,
+                          std::span<std::uint32_t, kFragmentStride> places) {
   constexpr std::size_t kLanes = hn::MaxLanes(U{});
   constexpr std::uint32_t kLaneBits = 0xffffu >> (Window::kRowLanes - kLanes);
-  for (unsigned row = first_row; row < end_row; ++row) {
-    for (const Window& window : windows) {
-      const auto origin =
-          static_cast<std::uint32_t>(window.x + ((window.y + 2 * static_cast<int>(row)) << 16));
-      const std::uint32_t passed = Window::row(window.passed, row);
-      // Also where none passed: that cannot be foreseen.
-      for (std::size_t lane = 0; lane < Window::kRowLanes; lane += kLanes)
-        count += append_lanes(passed >> lane & kLaneBits, lane, origin, places.data() + count);
-    }
+  for (unsigned row = 0; row < kWindow / 2; ++row) {
+    const auto origin = static_cast<std::uint32_t>(window.x + ((window.y + 2 * static_cast<int>(row)) << 16));
+    const std::uint32_t passed = Window::row(window.passed, row);
+    // Also where none passed: that cannot be foreseen.
+    for (std::size_t lane = 0; lane < Window::kRowLanes; lane += kLanes)
+      count += append_lanes(passed >> lane & kLaneBits, lane, origin, places.data() + count);
   }
   return count;
 }
@@ -105,9 +102,9 @@ namespace splatscope::raster {
 HWY_EXPORT(interpolate);
 HWY_EXPORT(append_places);
 
-std::size_t append_places(std::span<const Window> windows, unsigned first_row, unsigned end_row,
-                          std::size_t count, std::span<std::uint32_t, kFragmentStride> places) {
-  return HWY_DYNAMIC_DISPATCH(append_places)(windows, first_row, end_row, count, places);
+std::size_t append_places(const Window& window, std::size_t count,
+                          std::span<std::uint32_t, kFragmentStride> places) {
+  return HWY_DYNAMIC_DISPATCH(append_places)(window, count, places);
 }
 
 void interpolate(std::span<const FragmentsOfPiece> pieces, std::span<const primitive::UsedAttribute> used,

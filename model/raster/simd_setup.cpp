@@ -45,6 +45,7 @@ struct Grid {
       : steps(set(1 << subpixel_bits)),
         pixel(set(2 << subpixel_bits)),
         inverse(set(1.0 / (2 << subpixel_bits))) {}
+  // Truncated toward minus infinity, as the NV2A does (tests/oracle/window_geometry.json).
   V snap(V coordinate) const {
     const V below = hn::Floor(hn::Mul(coordinate, steps));
     return hn::Add(below, below);

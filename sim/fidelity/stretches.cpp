@@ -61,7 +61,7 @@ std::vector<Clocks> Stretches::of(const DrawJob& job) {
                          });
                        });
   std::vector<Clocks> stretches;
-  for (const Sums& stretch : sums) stretches.push_back(clocks_of(job, traffic, stretch));
+  for (const Sums& stretch : sums) stretches.push_back(clocks_of(job, traffic, stretch, stretches.empty()));
   return stretches;
 }
 
@@ -81,7 +81,7 @@ Stretches::Sums Stretches::sums_of(std::span<const TriangleWork> triangles) cons
   return sums;
 }
 
-Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums) const {
+Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums, bool first) const {
   const int width = machine_.pixel.quads_per_clock;
   auto vertices = static_cast<double>(sums.vertices), pieces = static_cast<double>(sums.pieces);
   const auto quads = static_cast<double>(sums.quads);
@@ -102,11 +102,21 @@ Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Su
     vertices = read;
   }
   clocks[kPrimitive] = std::max(clocks[kPrimitive], vertices);
-  clocks[kSetup] = pieces * machine_.setup.clocks_per_triangle;
-  clocks[kDepth] = quads / width;
-  clocks[kTexture] =
-      std::max(colored * traffic.texel_blocks / machine_.texture.lookups_per_clock, colored / width);
-  clocks[kPixel] = colored * static_cast<double>(job.pixel_clocks) / width;
+  // What passes a unit holds a place of its queue for the unit's latency, once the queue is full. Draws go
+  // past the units that they do not use.
+  const auto through = [first](double clocks, double items, int latency, int queue) {
+    return std::max(clocks, (items - (first ? queue : 0)) * latency / queue);
+  };
+  const Machine& m = machine_;
+  clocks[kSetup] = through(pieces * m.setup.clocks_per_triangle, pieces, m.setup.latency, m.setup.queue);
+  clocks[kRaster] = through(clocks[kRaster], quads, m.raster.latency, m.raster.queue);
+  if (uses_depth(*job.draw)) clocks[kDepth] = through(quads / width, colored, m.depth.latency, m.depth.queue);
+  if (job.textured)
+    clocks[kTexture] =
+        through(std::max(colored * traffic.texel_blocks / m.texture.lookups_per_clock, colored / width),
+                colored, m.texture.latency, m.texture.queue);
+  clocks[kPixel] = through(colored * static_cast<double>(job.pixel_clocks) / width, colored, m.pixel.latency,
+                           m.pixel.queue);
   clocks[kBlend] = colored / width;
   double bytes = quads * traffic.depth + colored * (traffic.color + traffic.texture);
   const auto in_agp = [&](std::uint32_t buffer) { return trace_.buffers[buffer].place == MemoryPlace::agp; };

@@ -73,7 +73,8 @@ class Stretches {
   };
 
   Sums sums_of(std::span<const TriangleWork> triangles) const;
-  Clocks clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums) const;
+  // `first`: of its draw.
+  Clocks clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums, bool first) const;
   double clocks_per_agp_line() const;
 
   const Trace& trace_;

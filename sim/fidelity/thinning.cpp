@@ -30,7 +30,9 @@ void ThinDraw::keep(std::size_t from, std::size_t to) {
   const Place begin = find(work, end_, from);
   const Place end = find(work, begin, to);
   if (begin.triangle != end_.triangle) {
-    cuts_.push_back({static_cast<std::uint32_t>(work_.quads.size()),
+    cuts_.push_back({static_cast<std::uint32_t>(work_.shaded_vertices.size()),
+                     static_cast<std::uint32_t>(work_.quads.size()),
+                     std::span(work.shaded_vertices).subspan(end_.vertex, begin.vertex - end_.vertex),
                      std::span(work.quads).subspan(end_.quad, begin.quad - end_.quad),
                      std::span(work.texel_blocks).subspan(end_.block, begin.block - end_.block)});
   }

@@ -1,5 +1,6 @@
 #include "sim/fidelity/throughput.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sim/fidelity/stretches.h"
@@ -180,6 +181,37 @@ TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
   EXPECT_EQ(estimate.command_ends.size(), simulated.command_ends.size());
   ASSERT_EQ(estimate.frame_cycles.size(), 1u);
   EXPECT_EQ(estimate.frame_cycles[0], estimate.cycles);
+}
+
+// A queue holds what is on its way through a unit too: no more of it passes in the unit's latency.
+TEST(Throughput, ALatencyThatFillsAQueueSetsThePace) {
+  for (const std::string_view setting :
+       {"setup.latency", "raster.latency", "depth.latency", "texture.latency", "pixel.latency"}) {
+    Machine machine = machine::load("geforce4-ti4400");
+    for (const std::string& more :
+         {std::string("vertex.units=16"), std::string("depth.queue=4"), std::string("setup.queue=4"),
+          std::string("raster.queue=4"), std::string("texture.queue=4"), std::string("pixel.queue=4"),
+          fmt::format("{}=200", setting)})
+      machine::assign(machine, more);
+    const RandomTrace made = textured();
+    const auto estimate = static_cast<double>(estimate_throughput(made.trace, made.work, machine).cycles);
+    const auto simulated = static_cast<double>(simulate(made.trace, made.work, machine).cycles);
+    EXPECT_NEAR(estimate / simulated, 1, 0.05) << setting;
+  }
+}
+
+TEST(Throughput, UnitsThatADrawGoesPastAreNotBusyWithIt) {
+  RandomTrace made = textured();
+  auto& draw = std::get<Draw>(made.trace.commands[1]);
+  draw.state.depth_test = draw.state.depth_write = false;
+  made.trace.commands.push_back(made.trace.commands[1]);  // a small one, that needs the unit
+  auto& small = std::get<Draw>(made.trace.commands.back());
+  small.state.depth_test = true;
+  small.index_count = 0;
+  made.work.emplace_back().command = static_cast<std::uint32_t>(made.trace.commands.size() - 1);
+  const Machine machine = machine::load("geforce4-ti4400");
+  const Result estimate = estimate_throughput(made.trace, made.work, machine);
+  EXPECT_EQ(std::ranges::find(estimate.units, "depth", &UnitBooks::name)->busy, 0u);
 }
 
 // Where no draw uses depth there is none to clear. The simulation has the latency of its writes besides.

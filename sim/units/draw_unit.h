@@ -12,9 +12,10 @@ namespace splatscope::sim {
 
 // A place in a draw at which some of it was left out: of a sampled draw (`../fidelity/sampled.h`).
 struct Cut {
-  std::uint32_t quad = 0;                 // the first one after it
-  std::span<const QuadWork> quads;        // that were left out
-  std::span<const std::uint32_t> blocks;  // texel blocks of these
+  std::uint32_t vertex = 0, quad = 0;       // the first ones after it
+  std::span<const std::uint32_t> vertices;  // that were left out, of `DrawWork::shaded_vertices`
+  std::span<const QuadWork> quads;          // that were left out
+  std::span<const std::uint32_t> blocks;    // texel blocks of these
 };
 
 // A draw as the units take it: its work, and what is the same for all of it.

@@ -19,7 +19,7 @@ std::uint64_t BlendUnit::start(const DrawJob& job) {
 }
 
 void BlendUnit::pass(const Cut& cut) {
-  for (const QuadWork& quad : last_of(cut.quads)) {
+  for (const QuadWork& quad : cut.quads) {
     if (is_colored(job(), quad)) cache_.pass(line_of(quad), true);
   }
 }

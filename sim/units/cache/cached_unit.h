@@ -28,11 +28,6 @@ class CachedUnit : public DrawUnit {
       pass(job().cuts[next_cut_]);
   }
   virtual void pass(const Cut& cut) = 0;
-  // The last of the quads left out, which decide what a cache holds: several times the lines of any.
-  static std::span<const QuadWork> last_of(std::span<const QuadWork> quads) {
-    constexpr std::size_t kRemembered = 8192;
-    return quads.last(std::min(quads.size(), kRemembered));
-  }
 
   int quads_per_clock_;
   std::size_t next_cut_ = 0;  // of the draw

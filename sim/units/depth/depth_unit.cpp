@@ -25,11 +25,12 @@ std::uint64_t DepthUnit::start(const DrawJob& job) {
 
 void DepthUnit::pass(const Cut& cut) {
   const DrawState& state = job().draw->state;
-  const auto writes = [&](const QuadWork& quad) { return state.depth_write && quad.passed != 0; };
   for (const QuadWork& quad : cut.quads) {
-    if (writes(quad)) cleared_[lines_.line_of(quad)] = false;
+    const std::uint32_t line = lines_.line_of(quad);
+    const bool writes = state.depth_write && quad.passed != 0;
+    if (writes) cleared_[line] = false;
+    cache_.pass(line, writes);
   }
-  for (const QuadWork& quad : last_of(cut.quads)) cache_.pass(lines_.line_of(quad), writes(quad));
 }
 
 void DepthUnit::clear(bool fast) {

@@ -1,9 +1,13 @@
 #include "sim/units/host/host.h"
 
+#include <cmath>
+
 namespace splatscope::sim {
 
 Femtoseconds Host::pixel_time(const Machine::Host& spec, Femtoseconds period, int pixel_bytes) {
-  const int reads = (pixel_bytes + spec.uncached_read_bytes - 1) / spec.uncached_read_bytes;
+  // A pixel takes whole reads, or one read serves several pixels.
+  const double part = static_cast<double>(pixel_bytes) / spec.uncached_read_bytes;
+  const double reads = part < 1 ? part : std::ceil(part);
   const double nanoseconds = reads * spec.uncached_read_nanoseconds + spec.division_nanoseconds;
   const int writes = (pixel_bytes + spec.write_bytes_per_clock - 1) / spec.write_bytes_per_clock;
   return femtoseconds_of(nanoseconds) + static_cast<Femtoseconds>(writes) * period;

@@ -80,6 +80,21 @@ TEST(Host, SendsOneCommandAfterTheOtherAndNormalisesPixelByPixel) {
   EXPECT_EQ(host.finished_at(), host.command_ends().back());
 }
 
+TEST(Host, AWideReadServesSeveralPixels) {
+  Machine::Host spec;
+  spec.uncached_read_nanoseconds = 100;
+  spec.division_nanoseconds = 0;
+  spec.write_bytes_per_clock = 4;
+  const auto nanoseconds = [&](int read_bytes) {
+    spec.uncached_read_bytes = read_bytes;
+    return Host::pixel_time(spec, 0, 4) / 1'000'000;
+  };
+  EXPECT_EQ(nanoseconds(1), 400u);
+  EXPECT_EQ(nanoseconds(3), 200u);
+  EXPECT_EQ(nanoseconds(4), 100u);
+  EXPECT_EQ(nanoseconds(16), 25u);
+}
+
 TEST(Host, PresentWritesTheCachesBackAndTheLastOneEndsTheRun) {
   Trace trace;
   trace.commands = {Draw{}, Present{}, Draw{}, Present{}};

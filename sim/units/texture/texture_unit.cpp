@@ -33,9 +33,7 @@ std::uint64_t TextureUnit::start(const DrawJob& job) {
 }
 
 void TextureUnit::pass(const Cut& cut) {
-  std::size_t blocks = 0;
-  for (const QuadWork& quad : last_of(cut.quads)) blocks += quad.texel_block_count;
-  for (const std::uint32_t block : cut.blocks.last(blocks)) cache_.pass(block >> line_shift_, false);
+  for (const std::uint32_t block : cut.blocks) cache_.pass(block >> line_shift_, false);
 }
 
 bool TextureUnit::leave(Cycle now) {

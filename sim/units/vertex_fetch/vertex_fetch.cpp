@@ -36,7 +36,7 @@ std::uint64_t VertexFetch::start(const DrawJob& job) {
   first_index_line_ = job.index_address / line_bytes;
   index_lines_ = (job.index_address + indices * kIndexBytes - 1) / line_bytes - first_index_line_ + 1;
   asked_ = taken_ = 0;
-  triangle_ = vertex_ = ended_ = 0;
+  triangle_ = vertex_ = ended_ = next_cut_ = 0;
   new_vertices_ = line_ = delivered_ = 0;
   in_triangle_ = in_vertex_ = false;
   walk_from_ = 0;
@@ -124,18 +124,32 @@ bool VertexFetch::walk(Cycle now) {
   return true;
 }
 
+VertexFetch::Lines VertexFetch::lines_of(std::uint32_t vertex) const {
+  const std::uint32_t stride = job().draw->vertex_stride, first = vertex * stride;
+  const auto line_bytes = static_cast<std::uint32_t>(spec_.line_bytes);
+  return {first / line_bytes, (first + std::max(stride, 1u) - 1) / line_bytes + 1};
+}
+
+// What the draw left out before vertex `vertex_` passes through the tags.
+void VertexFetch::pass_cuts() {
+  for (; next_cut_ < job().cuts.size() && job().cuts[next_cut_].vertex <= vertex_; ++next_cut_) {
+    for (const std::uint32_t vertex : job().cuts[next_cut_].vertices) {
+      const Lines lines = lines_of(vertex);
+      for (std::uint32_t line = lines.first; line < lines.end; ++line) cache_.pass(line, false);
+    }
+  }
+}
+
 // Asks for the lines of the next new vertex, which then waits for them.
 bool VertexFetch::gather(Cycle now) {
   if (!cache_.has_room()) return false;
-  const std::uint32_t stride = job().draw->vertex_stride;
-  const std::uint32_t first = job().work->shaded_vertices[vertex_] * stride;
-  const auto line_bytes = static_cast<std::uint32_t>(spec_.line_bytes);
-  const std::uint32_t end = (first + std::max(stride, 1u) - 1) / line_bytes + 1;
+  const Lines lines = lines_of(job().work->shaded_vertices[vertex_]);
   if (!in_vertex_) {
-    line_ = first / line_bytes;
+    pass_cuts();
+    line_ = lines.first;
     in_vertex_ = true;
   }
-  for (; line_ < end; ++line_) {
+  for (; line_ < lines.end; ++line_) {
     in_the_way_ = cache_.touch(now, line_, true, false);
     if (in_the_way_) return false;
   }

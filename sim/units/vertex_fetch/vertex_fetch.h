@@ -39,6 +39,11 @@ class VertexFetch final : public DrawUnit {
   std::uint32_t next_index_line() const;  // its address
   bool walk(Cycle now);
   bool gather(Cycle now);
+  struct Lines {
+    std::uint32_t first, end;
+  };
+  Lines lines_of(std::uint32_t vertex) const;
+  void pass_cuts();
   bool index_is_here(Cycle now);
   Step waiting(Cycle now);
   const Unit* no_unit_free(Cycle now) const;
@@ -63,6 +68,7 @@ class VertexFetch final : public DrawUnit {
   std::size_t vertex_ = 0;
   std::uint32_t line_ = 0;
   bool in_vertex_ = false;
+  std::size_t next_cut_ = 0;     // of the draw
   std::uint32_t delivered_ = 0;  // vertices
   std::size_t ended_ = 0;        // units told that the draw ends
   const Unit* in_the_way_ = nullptr;

@@ -86,6 +86,17 @@ TEST(VertexFetch, MayTakeAllIndicesOfATriangleInAClock) {
   EXPECT_EQ(left, (std::vector<Cycle>{22, 23, 24, 25, 26, 27, 28, 29}));
 }
 
+// What a sampled draw left out before vertex 4 has brought the line of vertices 4 and 5, and taken nothing.
+TEST(VertexFetch, WhatWasLeftOutPassesThroughTheTags) {
+  testing::TestDraw draw = two_quads();
+  const std::vector<std::uint32_t> left_out = {4, 5};
+  const Cut cuts[] = {{4, 0, left_out, {}, {}}};
+  draw.job.cuts = cuts;
+  const FetchBench run(draw, {}, 0);
+  ASSERT_EQ(run.vertices.memory.requests().size(), 3u);
+  EXPECT_EQ(run.vertices.memory.requests()[2].second.address, 0x10000u + 3 * 64);
+}
+
 TEST(VertexFetch, GoesToTheUnitThatIsFree) {
   testing::TestDraw draw = two_quads();
   const FetchBench run(draw, {}, 200);  // the second takes nothing until then
