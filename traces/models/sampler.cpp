@@ -148,13 +148,17 @@ class Sampler {
     return around;
   }
 
-  // Squared distance to the nearest point in those cells.
+  // Squared distance to the nearest point in those cells; of a cell with more than kCompared, where parts of
+  // the mesh lie so far apart that all of one is in few cells, to the last ones.
   double room(const Around& around, const MeshSample& place) const {
+    constexpr int kCompared = 256;
     double least = std::numeric_limits<double>::infinity();
     const glm::dvec3 position(place.position);
-    for (std::size_t n = 0; around[n] != kNone; ++n)
-      for (std::uint32_t p = states_[around[n]].last; p != kNone; p = next_[p])
+    for (std::size_t n = 0; around[n] != kNone; ++n) {
+      std::uint32_t p = states_[around[n]].last;
+      for (int i = 0; i < kCompared && p != kNone; ++i, p = next_[p])
         least = std::min(least, distance2(glm::dvec3(points_[p].position), position));
+    }
     return least;
   }
 
@@ -209,6 +213,7 @@ class Sampler {
     if (places.copies().empty()) return;
     const std::vector<MeshSample> placed = in_order();
     std::vector<PlaceCopy> stuck;
+    std::vector<std::uint32_t> tried(states_.size(), 0);  // places of a cell
     bool full = false;  // a long search found nothing: the mesh has no place left, or next to none
     std::size_t cell = 0, end = states_[0].samples;  // of the cell's points
     for (const PlaceCopy& copy : places.copies()) {
@@ -217,7 +222,8 @@ class Sampler {
       MeshSample& point = samples.points[copy.point];
       if (places.take(placed[copy.point].position)) {
         point = placed[copy.point];
-      } else if (full || !(settle(point, cell, places) || settle_anywhere(point, copy.point, places))) {
+      } else if (full ||
+                 !(settle(point, cell, tried, places) || settle_anywhere(point, copy.point, tried, places))) {
         full = true;
         stuck.push_back(copy);
       }
@@ -225,11 +231,13 @@ class Sampler {
     to_the_end(stuck, samples);
   }
 
-  bool settle(MeshSample& point, std::size_t cell, DistinctPlaces& places) const {
+  // At places of the cell that were not tried before.
+  bool settle(MeshSample& point, std::size_t cell, std::vector<std::uint32_t>& tried,
+              DistinctPlaces& places) const {
     constexpr std::size_t kTries = 64;
-    const std::size_t tried = kPlaces + states_[cell].samples;
+    const std::size_t first = kPlaces + states_[cell].samples;
     for (std::size_t i = 0; i < kTries; ++i) {
-      const MeshSample place = try_place(seen(cell), tried + i);
+      const MeshSample place = try_place(seen(cell), first + tried[cell]++);
       if (!places.take(place.position)) continue;
       point = place;
       return true;
@@ -237,11 +245,12 @@ class Sampler {
     return false;
   }
 
-  bool settle_anywhere(MeshSample& point, std::size_t number, DistinctPlaces& places) const {
+  bool settle_anywhere(MeshSample& point, std::size_t number, std::vector<std::uint32_t>& tried,
+                       DistinctPlaces& places) const {
     constexpr std::size_t kCells = 64;
     for (std::size_t i = 0; i < kCells; ++i) {
       stop_if_asked();
-      if (settle(point, scramble(kCells * number + i) % states_.size(), places)) return true;
+      if (settle(point, scramble(kCells * number + i) % states_.size(), tried, places)) return true;
     }
     return false;
   }

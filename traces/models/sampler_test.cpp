@@ -81,6 +81,17 @@ TEST(Sampler, NoTwoPointsHaveTheSamePosition) {
   }
 }
 
+// Two triangles so far apart that each lies in a cell or two; the second has 66 places, near 1e7.
+TEST(Sampler, PartsFarApartHavePlacesOfTheirOwn) {
+  Mesh mesh = triangle_at(0, 0, 1);
+  append(mesh, triangle_at(1e7f, 0, 10), 0);
+  SamplerOptions options;
+  options.count = 5000;
+  const MeshSamples samples = sample(mesh, options);
+  EXPECT_TRUE(samples.copy_of.empty()) << samples.copy_of.size();
+  EXPECT_EQ(distinct_positions(samples.points), 5000u);
+}
+
 // Near 1000 binary32 has steps of 6e-5: the triangle has 45 places, and takes them all.
 TEST(Sampler, WhatHasNoPlaceOfItsOwnIsACopy) {
   const Mesh mesh = triangle_at(1000, 1000, 0.0005f);
