@@ -9,6 +9,7 @@
 #include <string>
 
 #include "studies/reference_comparison.h"
+#include "studies/reproduction/table2.h"
 #include "studies/run.h"
 #include "traces/hierarchy/block_choice.h"
 #include "traces/recorder.h"
@@ -23,8 +24,10 @@ constexpr int kBlockSurfels[] = {16, 64, 256, 1024};
 constexpr double kDistances[] = {1, 2, 4, 8};
 
 traces::Scene scene_of(std::string_view model) {
-  return traces::parse_scene(
+  traces::Scene scene = traces::parse_scene(
       fmt::format("surfels.generator = \"{}\"\nhierarchy.culling = \"blocks\"\n", model), std::string(model));
+  scene.splatting.video_megabytes = free_video_memory(kMachine);
+  return scene;
 }
 
 // From so near that part of the model is out of the frame.

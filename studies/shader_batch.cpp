@@ -12,6 +12,7 @@
 #include "model/error.h"
 #include "model/isa/register_names.h"
 #include "model/pixel/pixel_program.h"
+#include "model/stop.h"
 #include "model/vertex/vertex_program.h"
 #include "studies/json_text.h"
 #include "studies/shader_case.h"
@@ -103,14 +104,16 @@ ordered_json outputs_of(const ShaderCase& test, Arithmetic arithmetic) {
 
 ShaderResult run_shader_case(std::string_view text, Arithmetic arithmetic) {
   ordered_json result{{"id", nullptr}};
-  bool is_object = false;
+  bool is_object = true;
   try {
     if (text.size() > kLongestLine)
-      throw UserError(kCaseName, 0, fmt::format("a line is longer than {} bytes", kLongestLine));
+      throw NoCase(kCaseName, 0, fmt::format("a line is longer than {} bytes", kLongestLine));
     ordered_json object = parse_case(text, kCaseName, 0);
-    is_object = true;
     if (object.contains("id") && is_case_id(object["id"])) result["id"] = object["id"];
     result["outputs"] = outputs_of(ShaderCase::of_object(std::move(object), kCaseName, 0), arithmetic);
+  } catch (const NoCase& error) {
+    is_object = false;
+    result["error"] = place_and_rule(error);
   } catch (const UserError& error) {
     result["error"] = place_and_rule(error);
   }
@@ -122,11 +125,13 @@ void run_shader_batch(std::istream& cases, std::string_view file, Arithmetic ari
   int line = 0, first_wrong = 0, wrong = 0;
   for (std::string text; read_line(cases, text);) {
     ++line;
+    stop_if_asked();
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
     const ShaderResult result = run_shader_case(text, arithmetic);
     results << result.json << '\n';
     if (!result.is_object && wrong++ == 0) first_wrong = line;
   }
+  stop_if_asked();
   if (cases.bad()) throw UserError(file, line + 1, "cannot be read, expected a JSON object a line");
   if (wrong == 0) return;
   throw UserError(file, first_wrong,

@@ -101,6 +101,14 @@ TEST(ShaderBatch, ACaseThatIsWrongIsAnErrorOfLine0) {
             R"({"id":null,"error":"0: the key \"v1\" stands twice in an object, expected it once"})");
 }
 
+// Unlike a line that is no object, an object that is no case does not count against the file.
+TEST(ShaderBatch, ACaseWithAKeyTwiceIsACaseWithAnError) {
+  std::istringstream cases(R"({"id": 1, "id": 2, "program": "vs_1_1\nmov oPos, v0\n"})");
+  std::ostringstream results;
+  EXPECT_EQ(error_of([&] { run_shader_batch(cases, "cases.jsonl", Arithmetic::ieee, results); }), "no error");
+  EXPECT_NE(results.str().find("stands twice"), std::string::npos) << results.str();
+}
+
 TEST(ShaderBatch, MessagesQuoteLittle) {
   EXPECT_LT(run(R"({"id": 1, ")" + std::string(100000, 'k') + R"(": 0})").size(), 200u);
   EXPECT_LT(run(R"({"id": 1, "tokens": [")" + std::string(100000, '1') + R"("]})").size(), 200u);

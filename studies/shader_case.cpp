@@ -33,19 +33,20 @@ std::string quote_of(std::string_view text) {
 ordered_json parse_case(std::string_view text, std::string_view file, int line) {
   using Event = ordered_json::parse_event_t;
   std::vector<std::set<std::string>> keys;  // of the objects that are open
+  std::string twice;                        // the first of these that stands there already
   const auto check = [&](int depth, Event event, ordered_json& parsed) {
     if (depth > kDepth)
-      throw UserError(file, line, fmt::format("this is nested deeper than {}, expected a case", kDepth));
+      throw NoCase(file, line, fmt::format("this is nested deeper than {}, expected a case", kDepth));
     if (event == Event::object_start) keys.emplace_back();
     if (event == Event::object_end) keys.pop_back();
-    if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second)
-      throw UserError(file, line,
-                      fmt::format("the key {} stands twice in an object, expected it once",
-                                  quote_of(parsed.get_ref<const std::string&>())));
+    if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second && twice.empty())
+      twice = quote_of(parsed.get_ref<const std::string&>());
     return true;
   };
   ordered_json object = ordered_json::parse(text, check, false);
-  if (!object.is_object()) throw UserError(file, line, "this is no JSON object, expected a case");
+  if (!object.is_object()) throw NoCase(file, line, "this is no JSON object, expected a case");
+  if (!twice.empty())
+    throw UserError(file, line, fmt::format("the key {} stands twice in an object, expected it once", twice));
   return object;
 }
 

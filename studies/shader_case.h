@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/error.h"
 #include "model/isa/program.h"
 #include "model/pixel/pixel_program.h"
 #include "model/vertex/vertex_program.h"
@@ -14,8 +15,14 @@
 // Registers that a user gives a program, as JSON (docs: COMMANDS, `shader run`).
 namespace splatscope::studies {
 
-// Text to a JSON object, which may still be no case. Throws UserError at `file`:`line` where it is none, or
-// is nested deeper than any case.
+// Text that is no JSON object, or one too long or too deep to look into.
+class NoCase : public UserError {
+ public:
+  using UserError::UserError;
+};
+
+// Text to a JSON object, which may still be no case. Throws NoCase at `file`:`line` where it is none, or is
+// nested deeper than any case; UserError where a key stands twice.
 nlohmann::ordered_json parse_case(std::string_view text, std::string_view file, int line);
 
 // Whether the "id" of a case is text or a number, as it has to be.

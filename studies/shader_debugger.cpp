@@ -15,6 +15,7 @@
 #include "model/isa/register_names.h"
 #include "model/isa/tokens.h"
 #include "model/pixel/registers.h"
+#include "model/stop.h"
 #include "traces/words.h"
 
 namespace splatscope::studies {
@@ -267,6 +268,7 @@ void ShaderDebugger::run(std::istream& commands, std::string_view name, std::ost
       out << error.what() << '\n';
     }
   }
+  stop_if_asked();  // the signal has ended the wait for a command
 }
 
 }  // namespace splatscope::studies

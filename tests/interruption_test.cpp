@@ -23,12 +23,16 @@ const std::vector<std::vector<std::string>> kLong = {
     {"record", "large.toml", "-o", "large.trace"},
     {"sample", "square.obj", "-n", "8000000", "-o", "s.ply"},
     {"run", "volume-head", "--fidelity", "throughput"},
+    {"shader", "run", "--batch", "cases.jsonl"},
     {"study", "vertex-data"},
     {"reproduce", "table1"}};
 
-// A mesh, and a scene whose weights take long to capture.
+// A mesh, many cases, and a scene whose weights take long to capture.
 void add_inputs(const ScratchFolder& folder) {
   folder.file("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  std::string cases;
+  for (int i = 0; i < 500000; ++i) cases += "{\"program\": \"vs_1_1\\nmov oPos, v0\\n\"}\n";
+  folder.file("cases.jsonl", cases);
   folder.file("large.toml",
               "[surfels]\ncolumns = 1500\nrows = 1500\n[capture]\nviews = 64\nframe_size = 2048\n"
               "[frame]\nwidth = 2048\nheight = 2048\n");
