@@ -7,7 +7,6 @@ namespace splatscope::app {
 // What all commands share.
 struct Invocation {
   bool quiet = false;  // no progress bar
-  int status = 0;      // of exit; 1 where a comparison did not hold
 };
 
 // Each command adds itself to the program's command line: its options, its help with an example, and what it

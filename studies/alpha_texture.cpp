@@ -191,7 +191,7 @@ void study_alpha_texture(Findings& findings, const Progress& progress) {
                          kernels::optimal_length(cutoff), least_length(cutoff));
     tell(progress, all.size(), std::size(kCutoffs));
   }
-  findings.say(sizes + text_of(all));
+  findings.text(sizes + text_of(all));
   findings.plot("alpha-texture-size", size_plot());
   findings.plot("alpha-texture-repeated", repeated);
   findings.plot("alpha-texture-psnr", pictures);

@@ -104,8 +104,8 @@ void study_extremes(Findings& findings, const Progress& progress) {
     findings.plot(fmt::format("extremes-{}", &sweep - sweeps.data()), plot);
     tell(part(progress, 0, 0.7), static_cast<std::size_t>(&sweep - sweeps.data()) + 1, sweeps.size());
   }
-  findings.say(text_of(rows));
-  findings.say(
+  findings.text(text_of(rows));
+  findings.text(
       fmt::format("\n{:<36} {:<7} {:<5} {:>5}  {:<21}  {:<21}\n{:>57} {:>7} {:>6} {:>6}  {:>7} {:>6} {:>6}\n",
                   "guard", "program", "arith", "slots", "without it", "with it", "", "not fin", "10 %",
                   "wide", "not fin", "10 %", "wide"));
@@ -114,7 +114,7 @@ void study_extremes(Findings& findings, const Progress& progress) {
     for (const auto& [arithmetic, name] :
          {std::pair{Arithmetic::ieee, "ieee"}, std::pair{Arithmetic::nv20, "nv20"}}) {
       const GuardRow row = guard_row(guard, arithmetic, kOfAKind, kExtremesSeed);
-      findings.say(line_of(row, name) + "\n");
+      findings.text(line_of(row, name) + "\n");
       const auto counts = [](const GuardRow::Counts& c) {
         return Json{{"not_finite", c.not_finite}, {"off_10_percent", c.off}, {"too_wide", c.too_wide}};
       };
@@ -126,7 +126,7 @@ void study_extremes(Findings& findings, const Progress& progress) {
                             {"with", counts(row.with)}});
     }
   }
-  findings.say("\n" + text_of_special_inputs());
+  findings.text("\n" + text_of_special_inputs());
   findings.result("extremes", {{"sweeps", std::move(list)}, {"guards", std::move(guard_list)}});
 }
 

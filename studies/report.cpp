@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <span>
 
 #include "model/embedded_file.h"
@@ -27,6 +28,12 @@ std::string escaped(std::string_view text) {
   std::string result;
   result.reserve(text.size());
   for (char c : valid_utf8(text)) {
+    constexpr std::string_view kBlanks = "\t\n\r";
+    const bool is_control = std::iscntrl(static_cast<unsigned char>(c)) != 0;
+    if (is_control && kBlanks.find(c) == std::string_view::npos) {  // no page may hold one
+      result += "\xef\xbf\xbd";
+      continue;
+    }
     switch (c) {
       case '&':
         result += "&amp;";
@@ -94,6 +101,17 @@ void Report::heading(std::string_view text) {
 
 void Report::paragraph(std::string_view text) {
   body_ += fmt::format("<p>{}</p>\n", escaped(text));
+}
+
+void Report::lines(std::string_view text) {
+  constexpr std::string_view kEnd = "</pre>\n";
+  if (body_.ends_with(kEnd)) {
+    body_.erase(body_.size() - kEnd.size());
+  } else {
+    body_ += "<pre>";
+  }
+  body_ += escaped(text);
+  body_ += kEnd;
 }
 
 void Report::table(std::string_view caption, const std::vector<Column>& columns,

@@ -21,6 +21,9 @@ class Report {
 
   void heading(std::string_view text);
   void paragraph(std::string_view text);
+  // Text in lines as they are, in letters of one width. What comes next in this way goes on in the same
+  // block.
+  void lines(std::string_view text);
 
   enum class Align { text, number, prose };  // prose is broken into lines
   struct Column {

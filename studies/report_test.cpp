@@ -31,6 +31,19 @@ TEST(Report, HoldsNoBytesThatAreNoText) {
   EXPECT_EQ(escaped("\xC3\xA9\\\n"), "\xC3\xA9\\\n");
 }
 
+TEST(Report, HoldsNoControlCharacters) {
+  EXPECT_EQ(escaped("a\x01\x1b[31m\x7f\tb\r\n"), "a\xEF\xBF\xBD\xEF\xBF\xBD[31m\xEF\xBF\xBD\tb\r\n");
+}
+
+TEST(Report, LinesThatFollowEachOtherStandInOneBlock) {
+  Report report("t", "l");
+  report.lines("a  <1>\n");
+  report.lines("bb  2\n");
+  report.paragraph("p");
+  report.lines("c\n");
+  EXPECT_TRUE(holds(report.html(), "<pre>a  &lt;1&gt;\nbb  2\n</pre>\n<p>p</p>\n<pre>c\n</pre>"));
+}
+
 TEST(Report, LoadsNothing) {
   Image image(2, 2);
   Report report("t", "l");

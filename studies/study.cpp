@@ -56,6 +56,11 @@ void Findings::say(std::string_view text) {
   fmt::print("{}", text);
 }
 
+void Findings::text(std::string_view text) {
+  say(text);
+  report_.lines(text);
+}
+
 void Findings::table(std::string_view caption, const std::vector<Report::Column>& columns,
                      const std::vector<std::vector<std::string>>& rows) {
   report_.table(caption, columns, rows);

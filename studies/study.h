@@ -37,6 +37,8 @@ class Findings {
   void result(std::string_view key, nlohmann::ordered_json value);
   // Goes to standard output.
   void say(std::string_view text);
+  // Goes to standard output and into the report, in lines as they are.
+  void text(std::string_view text);
   // Goes to standard output, and under its caption into the report.
   void table(std::string_view caption, const std::vector<Report::Column>& columns,
              const std::vector<std::vector<std::string>>& rows);

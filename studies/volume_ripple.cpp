@@ -48,7 +48,7 @@ void study_volume_ripple(Findings& findings, const Progress& progress) {
     }
     tell(progress, ++done, std::size(kCutoffs));
   }
-  findings.say(text + "\n");
+  findings.text(text + "\n");
   findings.result("volume_ripple", std::move(json));
 }
 

@@ -16,7 +16,8 @@ namespace splatscope::sim {
 // has the pipeline's latency on top. Misses of the frame and texture caches are counted on the tags for the
 // sampled triangles of each draw (DrawWork::is_sampled). Rows of DRAM, contention, waits between units, and
 // the rest of a line of memory of which one vertex is fetched (where vertices are not in the order of their
-// indices) do not count.
+// indices), and what the caches write back where they are flushed do not count; nor does what a vertex that
+// is shaded again finds in the vertex cache.
 //
 // Of the result, `event_hash` is 0, `statistics` is empty, and a unit that is not busy is starved. Throws
 // like simulate().

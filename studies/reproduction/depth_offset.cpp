@@ -64,7 +64,7 @@ std::array<OffsetRun, 2> compare_schemes(const std::string& name, const traces::
   }
   findings.pictures(pictures);
   findings.pictures(wrong);
-  findings.say(text);
+  findings.text(text);
   findings.result(name, std::move(results));
   return runs;
 }

@@ -64,7 +64,7 @@ class Figure10 {
            const kernels::ScreenSpacePicture& reference) {
     const double decibels = psnr(frame, reference);
     pictures_.push_back({"fig10-" + name, caption, picture_of(frame)});
-    findings_.say(fmt::format("fig10 {:<22} {:>5.1f} dB  {}\n", name, decibels, caption));
+    findings_.text(fmt::format("fig10 {:<22} {:>5.1f} dB  {}\n", name, decibels, caption));
     results_[name] = {{"psnr_decibels", decibels}};
   }
 
@@ -121,12 +121,12 @@ class Figure10 {
     Plot plot{.title = "gamma against clamping", .x_label = "gamma", .y_label = "percent, or dB"};
     plot.series = {
         {"pixels saturated, %", {}, {}}, {"weights from clamped sums, %", {}, {}}, {"PSNR, dB", {}, {}}};
-    findings_.say(fmt::format("fig10 {:>6} {:>10} {:>9} {:>9}   (0: the program chooses {:.2f})\n", "gamma",
-                              "saturated", "clamped", "PSNR", scene.splatting.gamma));
+    findings_.text(fmt::format("fig10 {:>6} {:>10} {:>9} {:>9}   (0: the program chooses {:.2f})\n", "gamma",
+                               "saturated", "clamped", "PSNR", scene.splatting.gamma));
     auto list = nlohmann::ordered_json::array();
     for (const GammaRow& row : rows) {
-      findings_.say(fmt::format("      {:>6.2f} {:>9.2f}% {:>8.2f}% {:>6.1f} dB\n", row.gamma,
-                                100 * row.saturated, 100 * row.clamped, row.psnr));
+      findings_.text(fmt::format("      {:>6.2f} {:>9.2f}% {:>8.2f}% {:>6.1f} dB\n", row.gamma,
+                                 100 * row.saturated, 100 * row.clamped, row.psnr));
       list.push_back({{"gamma", row.gamma},
                       {"saturated", row.saturated},
                       {"clamped", row.clamped},

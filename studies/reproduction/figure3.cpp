@@ -117,7 +117,8 @@ void reproduce_figure3(Findings& findings, const Progress& progress) {
             .y_label = "holes, percent of the pixels inside",
             .log_y = true};
   nlohmann::ordered_json results;
-  findings.say(fmt::format("{:<6}{:<8}{:>8} {:>8} {:>9}\n", "fig3", "surfels", "side, h", "holes", "inside"));
+  findings.text(
+      fmt::format("{:<6}{:<8}{:>8} {:>8} {:>9}\n", "fig3", "surfels", "side, h", "holes", "inside"));
   for (const auto& [name, scene] : {std::pair("even", &scenes.even), {"uneven", &scenes.uneven}}) {
     const std::vector<DepthImage> images =
         depth_images(*scene, kSides, surface, machine::load("geforce4-ti4400"));
@@ -127,8 +128,8 @@ void reproduce_figure3(Findings& findings, const Progress& progress) {
     for (const DepthImage& image : images) {
       const double percent =
           100 * static_cast<double>(image.holes.size()) / static_cast<double>(image.inside_pixels);
-      findings.say(fmt::format("{:<6}{:<8}{:>8} {:>8} {:>8.3f}%\n", "", name, image.side, image.holes.size(),
-                               percent));
+      findings.text(fmt::format("{:<6}{:<8}{:>8} {:>8} {:>8.3f}%\n", "", name, image.side, image.holes.size(),
+                                percent));
       list.push_back(
           {{"side", image.side}, {"holes", image.holes.size()}, {"inside_pixels", image.inside_pixels}});
       series.x.push_back(image.side);

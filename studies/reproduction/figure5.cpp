@@ -100,7 +100,7 @@ void reproduce_figure5(Findings& findings, const Progress& progress) {
   compare_schemes("fig5", scene, weights, machine, surface, findings);
   const std::vector<OffsetRow> rows =
       sweep_offset(scene, kOffsets, weights, machine, surface, part(progress, 0.5, 1));
-  findings.say(text_of(rows));
+  findings.text(text_of(rows));
   std::vector<Findings::Picture> extremes;
   for (const auto& [name, spacings] : {std::pair("small", 0.12), std::pair("large", 24.0)}) {
     const OffsetRun run = run_with_offset(scene, traces::DepthOffsetScheme::viewing_ray,

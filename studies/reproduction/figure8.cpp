@@ -68,7 +68,7 @@ void reproduce_figure8(Findings& findings, const Progress& /*progress*/) {
   findings.plot("fig8a", a);
   findings.plot("fig8b", b);
   const double error = half_diagonal / glm::length(exact) - 1;
-  findings.say(
+  findings.text(
       fmt::format("fig8: r0 {:.4f}, r1 {:.4f} in units of h; the program's half diagonal is {:.4f}, {:+.1e} "
                   "of it from the exact one\n",
                   glm::length(filter->axes[0]), glm::length(filter->axes[1]), half_diagonal, error));

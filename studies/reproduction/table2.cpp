@@ -137,7 +137,7 @@ void reproduce_table2(Findings& findings, const Progress& progress) {
   const std::vector<Table2Row> rows = table2_rows(Fidelity::cycle, progress);
   findings.result("table2", json_of(rows));
   add_to(findings, rows);
-  findings.say(fmt::format("median error {:.1f} %\n", 100 * median_error(rows)));
+  findings.text(fmt::format("median error {:.1f} %\n", 100 * median_error(rows)));
 }
 
 }  // namespace splatscope::studies

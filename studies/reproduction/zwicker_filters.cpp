@@ -114,7 +114,7 @@ void reproduce_zwicker_figure9(Findings& findings, const Progress& progress) {
     plot.series.push_back(std::move(series));
   }
   for (const std::string& line : lines) text += "\n" + line;
-  findings.say(text + "\n");
+  findings.text(text + "\n");
   findings.plot("zwicker-fig9", plot);
   findings.result("zwicker_fig9", std::move(json));
   if (progress) progress(1);
@@ -145,7 +145,7 @@ void reproduce_zwicker_figure13(Findings& findings, const Progress& progress) {
                     {"ewa", json_of(radii[1])},
                     {"swan", json_of(radii[2])}});
   }
-  findings.say(text);
+  findings.text(text);
   findings.result("zwicker_fig13", std::move(json));
   if (progress) progress(1);
 }

@@ -110,14 +110,14 @@ void reproduce_zwicker_figure14(Findings& findings, const Progress& progress) {
     }
     tell(progress, i + 1, cases.size());
   }
-  findings.say(text);
+  findings.text(text);
   findings.result("zwicker_fig14", std::move(json));
 }
 
 void reproduce_zwicker_figure15(Findings& findings, const Progress& progress) {
   findings.report().heading("Zwicker 2002, Fig. 15: volume kernels and surface kernels");
   KernelRow row = compare_kernels(512, oblique(320));
-  findings.say(
+  findings.text(
       fmt::format("zwicker-fig15  volume kernels {:.1f} dB, surface kernels {:.1f} dB against the texture\n",
                   row.psnr_volume, row.psnr_surface));
   findings.result("zwicker_fig15", {{"texture", {512, 512, kLayers}},
