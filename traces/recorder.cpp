@@ -1,7 +1,6 @@
 #include "traces/recorder.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "model/error.h"
 #include "traces/gamma.h"
@@ -47,19 +46,6 @@ struct Blocks {
     for (const std::uint32_t surfel : tree.order) weights.front().push_back(given[surfel]);
   }
 };
-
-// What a frame shows together is normalised together: of its levels each has the least gamma of them.
-void share_gammas(Blocks& blocks) {
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const ChosenFrame& frame : blocks.frames) {
-      const std::vector<std::size_t> levels = levels_of({&frame, 1});
-      double least = kPaperGamma;
-      for (const std::size_t level : levels) least = std::min(least, blocks.gammas[level]);
-      for (const std::size_t level : levels) changed |= std::exchange(blocks.gammas[level], least) != least;
-    }
-  }
-}
 
 void record_all(const Scene& scene, std::span<const VertexWeights> weights, Recording& out) {
   out.counts.scene_surfels = out.counts.surfels = scene.surfels.size();
@@ -109,12 +95,6 @@ Recording record(const Scene& scene, const NumberFormats& formats,
   Recording out;
   Blocks blocks(scene);
   const std::vector<std::size_t> levels = levels_of(blocks.frames);
-  for (const std::size_t level : levels)
-    if (level != 0)
-      blocks.gammas[level] = std::min(
-          scene.splatting.gamma,
-          suitable_gamma(blocks.tree.levels[level].surfels, level_splatting(scene.splatting, level)));
-  share_gammas(blocks);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const auto step = [&](double fraction) {
       if (progress) progress((static_cast<double>(i) + fraction) / static_cast<double>(levels.size()));
@@ -122,7 +102,8 @@ Recording record(const Scene& scene, const NumberFormats& formats,
     const std::size_t level = levels[i];
     Splatting splatting = level_splatting(scene.splatting, level);
     const std::span<const Surfel> surfels = level == 0 ? scene.surfels : blocks.tree.levels[level].surfels;
-    splatting.gamma = blocks.gammas[level];
+    if (level != 0) splatting.gamma = std::min(splatting.gamma, suitable_gamma(surfels, splatting));
+    blocks.gammas[level] = splatting.gamma;
     CapturedWeights captured = weights_of(surfels, scene, splatting, formats, step);
     count(captured, scene, out.counts);
     if (level == 0) {

@@ -134,35 +134,6 @@ TEST(Recorder, RefinesTheLastOfProgressiveFrames) {
   EXPECT_EQ(progressive, refined);
 }
 
-// Where levels meet in a pixel, each counts by its area alone: the picture does not depend on gamma, which a
-// coarser level would have less of by itself.
-TEST(Recorder, LevelsThatMeetAreNormalisedTogether) {
-  Scene scene = parse_scene(
-      "[surfels]\ngenerator = \"sphere\"\ncount = 4000\n[frame]\nwidth = 96\nheight = 96\n[hierarchy]\n"
-      "culling = \"blocks\"\nblock_surfels = 16\nlevel = \"auto\"\nsurfels_per_pixel = 0.04\n"
-      "[splatting]\nalgorithm = \"ewa-per-pixel\"\ngamma = 0.5\n",
-      "levels.toml");
-  NumberFormats formats;
-  formats.frame = FrameFormat::float32;
-  formats.color = ColorFormat::float32;
-  const auto picture = [&](double gamma) {
-    scene.splatting.gamma = gamma;
-    const Recording recording = record(scene, formats);
-    const std::vector<std::size_t>& by_level = recording.counts.blocks.surfels_by_level;
-    EXPECT_GT(by_level[0], 100u);
-    EXPECT_GT(by_level[1], 100u);
-    RenderOptions options;
-    options.formats = formats;
-    return render(recording.trace, options).frame;
-  };
-  const splatscope::Frame bright = picture(0.5), dark = picture(0.2);
-  double worst = 0;
-  for (std::size_t pixel = 0; pixel < bright.depth.size(); ++pixel)
-    for (std::size_t c = 0; c < 3; ++c)
-      worst = std::max(worst, double{std::abs(bright.color(pixel)[c] - dark.color(pixel)[c])});
-  EXPECT_LT(worst, 0.01);
-}
-
 TEST(Recorder, DrawsInBatchesOfSixteenBitIndices) {
   Scene scene = small_plane(Algorithm::ewa_per_pixel);
   scene.surfels.resize(20000, scene.surfels.front());
