@@ -174,6 +174,11 @@ void ShaderDebugger::step(std::ostream& out) {
   if (at_end()) out << "end of the program\n";
 }
 
+void ShaderDebugger::step_back() {
+  --at_;
+  while (at_ > 0 && program_.instructions[at_].coissue) --at_;
+}
+
 void ShaderDebugger::run_while(std::ostream& out, const std::function<bool()>& go_on) {
   while (!at_end() && go_on()) step(out);
 }
@@ -213,8 +218,7 @@ bool ShaderDebugger::obey(std::string_view command, const std::vector<std::strin
     int left = arguments.empty() ? 1 : number_of(arguments[0]);
     run_while(out, [&] { return left-- > 0; });
   } else if (is("back")) {
-    at_ -= std::min(at_, static_cast<std::size_t>(arguments.empty() ? 1 : number_of(arguments[0])));
-    while (at_ > 0 && !at_end() && program_.instructions[at_].coissue) --at_;
+    for (int left = arguments.empty() ? 1 : number_of(arguments[0]); left > 0 && at_ > 0; --left) step_back();
   } else if (is("run")) {
     if (arguments.empty()) throw std::invalid_argument("run where? expected a line");
     const int line = number_of(arguments[0]);
@@ -223,6 +227,7 @@ bool ShaderDebugger::obey(std::string_view command, const std::vector<std::strin
     if (!at_end()) step(out);
     run_while(out, [&] { return !watched_changed(); });
   } else if (is("watch")) {
+    if (arguments.empty()) throw std::invalid_argument("watch what? expected registers");
     check_names();
     watched_.insert(watched_.end(), arguments.begin(), arguments.end());
   } else if (is("unwatch")) {

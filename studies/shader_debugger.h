@@ -37,6 +37,7 @@ class ShaderDebugger {
   // False where the command is quit. Throws std::invalid_argument saying what is wrong with it.
   bool obey(std::string_view command, const std::vector<std::string>& arguments, std::ostream& out);
   void step(std::ostream& out);
+  void step_back();  // as far as step() goes
   void run_while(std::ostream& out, const std::function<bool()>& go_on);
   void print(const std::vector<std::string>& names, std::ostream& out) const;
   void list(std::ostream& out) const;

@@ -58,6 +58,9 @@ TEST(ShaderDebugger, PairsAreOneStepAndRelativeConstantsAreFollowed) {
   const std::string pair =
       transcript("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, r0.b\n", "step 2\nlist\n");
   EXPECT_NE(pair.find("end of the program"), std::string::npos);
+  const std::string there_and_back =
+      transcript("ps_1_1\nmov r0, v0\nmov r0.rgb, r0.a\n+ mov r0.a, r0.b\n", "step 2\nback 2\nlist\n");
+  EXPECT_NE(there_and_back.find("\n>   2  mov r0, v0\n"), std::string::npos) << there_and_back;
   const std::string relative =
       transcript("vs_1_1\nmov a0.x, c0.x\nmov oPos, c[a0.x + 1]\n", "step 2\n",
                  R"({"constants": {"c0": ["40000000", "0", "0", "0"], "c3": ["3f800000", "0", "0", "0"]}})");
