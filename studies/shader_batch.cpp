@@ -111,10 +111,8 @@ ShaderResult run_shader_case(std::string_view text, Arithmetic arithmetic) {
     ordered_json object = parse_case(text, kCaseName, 0);
     if (object.contains("id") && is_case_id(object["id"])) result["id"] = object["id"];
     result["outputs"] = outputs_of(ShaderCase::of_object(std::move(object), kCaseName, 0), arithmetic);
-  } catch (const NoCase& error) {
-    is_object = false;
-    result["error"] = place_and_rule(error);
   } catch (const UserError& error) {
+    is_object = dynamic_cast<const NoCase*>(&error) == nullptr;
     result["error"] = place_and_rule(error);
   }
   return {json_text(result), is_object};  // a message may quote half a character

@@ -158,15 +158,14 @@ void read_parameter(Machine& machine, const std::string& name, const toml::node&
 
 // Where one of these parameters was set: the option, else the line of `file`.
 Place set_by(const Machine& machine, std::initializer_list<std::string_view> names, std::string_view file) {
+  Place place{file};
   for (const std::string_view name : names) {
     const auto origin = machine.origins.find(name);
-    if (origin != machine.origins.end() && origin->second.confidence == kSet) return {origin->second.source};
+    if (origin == machine.origins.end()) continue;
+    if (origin->second.confidence == kSet) return {origin->second.source};
+    if (place.line == 0) place.line = origin->second.line;
   }
-  for (const std::string_view name : names) {
-    const auto origin = machine.origins.find(name);
-    if (origin != machine.origins.end() && origin->second.line != 0) return {file, origin->second.line};
-  }
-  return {file};
+  return place;
 }
 
 // Sizes that address arithmetic splits by bits, and groups of parameters that must fit together. `file` gave

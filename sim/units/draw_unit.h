@@ -76,6 +76,7 @@ class DrawUnit : public Unit {
   // The number of items that the unit has to do of this draw; they are seen from the next cycle on.
   std::uint64_t begin(const DrawJob& job) {
     job_ = &job;
+    next_cut_ = 0;
     remaining_ = start(job);
     return remaining_;
   }
@@ -89,6 +90,14 @@ class DrawUnit : public Unit {
   void item_done(Cycle last) {
     if (--remaining_ == 0) completion_.finish(last);
   }
+  // Before item `number` is taken: pass(cut) for each cut before it that was not met yet. `first_after`:
+  // which of the items a cut is told by.
+  template <typename Pass>
+  void pass_cuts(std::uint32_t Cut::*first_after, std::size_t number, Pass pass) {
+    const std::span<const Cut> cuts = job_->cuts;
+    for (; next_cut_ < cuts.size() && cuts[next_cut_].*first_after <= number; ++next_cut_)
+      pass(cuts[next_cut_]);
+  }
   Step nothing_to_take(Cycle next) const { return has_work() ? starved(next) : idle(next); }
   Completion& completion() { return completion_; }
 
@@ -96,6 +105,7 @@ class DrawUnit : public Unit {
   Completion& completion_;
   const DrawJob* job_ = nullptr;
   std::uint64_t remaining_ = 0;
+  std::size_t next_cut_ = 0;  // of the draw
 };
 
 }  // namespace splatscope::sim

@@ -216,10 +216,10 @@ std::size_t drop_faces_out_of_range(aiScene& scene, bool& polygons) {
 // own name, which is none that was missed.
 std::size_t missing_materials(const std::vector<std::filesystem::path>& files, std::filesystem::path mesh) {
   std::set<std::filesystem::path> missing;
-  for (const std::filesystem::path& name : files) {
+  for (const std::filesystem::path& file : files) {
     std::error_code error;
-    if (ending_of(name) == ".mtl" && !std::filesystem::is_regular_file(name, error))
-      missing.insert(name.lexically_normal());
+    if (ending_of(file) == ".mtl" && !std::filesystem::is_regular_file(file, error))
+      missing.insert(file.lexically_normal());
   }
   if (missing.size() > 1) missing.erase(mesh.replace_extension(".mtl").lexically_normal());
   return missing.size();

@@ -14,7 +14,6 @@ void BlendUnit::connect(Channel<std::uint32_t>& in, MemoryPort& port, std::uint3
 }
 
 std::uint64_t BlendUnit::start(const DrawJob& job) {
-  next_cut_ = 0;
   return job.colored_quads;
 }
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <span>
-
 #include "sim/kernel/channel.h"
 #include "sim/units/cache/cache_pipe.h"
 #include "sim/units/draw_unit.h"
@@ -24,13 +21,11 @@ class CachedUnit : public DrawUnit {
 
   // Before quad `number` is looked up: what the draw left out before it passes through the tags.
   void pass_cuts(std::uint32_t number) {
-    for (; next_cut_ < job().cuts.size() && job().cuts[next_cut_].quad <= number; ++next_cut_)
-      pass(job().cuts[next_cut_]);
+    DrawUnit::pass_cuts(&Cut::quad, number, [this](const Cut& cut) { pass(cut); });
   }
   virtual void pass(const Cut& cut) = 0;
 
   int quads_per_clock_;
-  std::size_t next_cut_ = 0;  // of the draw
   Channel<std::uint32_t>* in_ = nullptr;
   CachePipe cache_;
   const Unit* in_the_way_ = nullptr;  // of the quad that would enter

@@ -18,7 +18,6 @@ void DepthUnit::connect(Quads& in, const QuadTargets& out, MemoryPort& port, std
 }
 
 std::uint64_t DepthUnit::start(const DrawJob& job) {
-  next_cut_ = 0;
   out_ = targets_.of(job);
   return uses_depth(*job.draw) ? job.work->quads.size() : 0;
 }

@@ -28,7 +28,6 @@ std::uint64_t TextureUnit::start(const DrawJob& job) {
   cache_.invalidate();
   next_block_ = 0;
   blocks_done_ = 0;
-  next_cut_ = 0;
   return job.colored_quads;
 }
 

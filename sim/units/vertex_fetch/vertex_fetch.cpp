@@ -36,7 +36,7 @@ std::uint64_t VertexFetch::start(const DrawJob& job) {
   first_index_line_ = job.index_address / line_bytes;
   index_lines_ = (job.index_address + indices * kIndexBytes - 1) / line_bytes - first_index_line_ + 1;
   asked_ = taken_ = 0;
-  triangle_ = vertex_ = ended_ = next_cut_ = 0;
+  triangle_ = vertex_ = ended_ = 0;
   new_vertices_ = line_ = delivered_ = 0;
   in_triangle_ = in_vertex_ = false;
   walk_from_ = 0;
@@ -130,13 +130,11 @@ VertexFetch::Lines VertexFetch::lines_of(std::uint32_t vertex) const {
   return {first / line_bytes, (first + std::max(stride, 1u) - 1) / line_bytes + 1};
 }
 
-// What the draw left out before vertex `vertex_` passes through the tags.
-void VertexFetch::pass_cuts() {
-  for (; next_cut_ < job().cuts.size() && job().cuts[next_cut_].vertex <= vertex_; ++next_cut_) {
-    for (const std::uint32_t vertex : job().cuts[next_cut_].vertices) {
-      const Lines lines = lines_of(vertex);
-      for (std::uint32_t line = lines.first; line < lines.end; ++line) cache_.pass(line, false);
-    }
+// What the draw left out passes through the tags.
+void VertexFetch::pass(const Cut& cut) {
+  for (const std::uint32_t vertex : cut.vertices) {
+    const Lines lines = lines_of(vertex);
+    for (std::uint32_t line = lines.first; line < lines.end; ++line) cache_.pass(line, false);
   }
 }
 
@@ -145,7 +143,7 @@ bool VertexFetch::gather(Cycle now) {
   if (!cache_.has_room()) return false;
   const Lines lines = lines_of(job().work->shaded_vertices[vertex_]);
   if (!in_vertex_) {
-    pass_cuts();
+    pass_cuts(&Cut::vertex, vertex_, [this](const Cut& cut) { pass(cut); });
     line_ = lines.first;
     in_vertex_ = true;
   }

@@ -43,7 +43,7 @@ class VertexFetch final : public DrawUnit {
     std::uint32_t first, end;
   };
   Lines lines_of(std::uint32_t vertex) const;
-  void pass_cuts();
+  void pass(const Cut& cut);
   bool index_is_here(Cycle now);
   Step waiting(Cycle now);
   const Unit* no_unit_free(Cycle now) const;
@@ -68,7 +68,6 @@ class VertexFetch final : public DrawUnit {
   std::size_t vertex_ = 0;
   std::uint32_t line_ = 0;
   bool in_vertex_ = false;
-  std::size_t next_cut_ = 0;     // of the draw
   std::uint32_t delivered_ = 0;  // vertices
   std::size_t ended_ = 0;        // units told that the draw ends
   const Unit* in_the_way_ = nullptr;
