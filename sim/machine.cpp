@@ -259,7 +259,7 @@ void expect_countable_time(const Trace& trace, const Machine& spec) {
                       pixels * static_cast<double>(pixel_time);
   if (time <= static_cast<double>(kMostTime)) return;
   throw UserError("trace", 0,
-                  fmt::format("the host alone takes {:.1f} hours of the machine's time, for {:.0f} commands "
+                  fmt::format("the host alone takes {:.4f} hours of the machine's time, for {:.0f} commands "
                               "(host.command_nanoseconds) and {:.0f} pixels that it normalises "
                               "(host.uncached_read_nanoseconds, host.uncached_read_bytes, "
                               "host.division_nanoseconds), expected at most 5",
