@@ -1,8 +1,10 @@
 #include "sim/units/vertex/throughput.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "sim/units/vertex/issue_logic.h"
+#include "sim/units/vertex/vertex_unit.h"
 
 namespace splatscope::sim {
 namespace {
@@ -23,9 +25,16 @@ Throughput between(const Sums& from, const Sums& to) {
   return rates;
 }
 
-}  // namespace
+// That a vertex alone in its unit is there, from taking to passing on.
+Cycle latency(const std::vector<IssueSlot>& slots, const Machine::Vertex& spec) {
+  IssueLogic logic(slots, spec);
+  logic.take();
+  for (Cycle cycles = 1;; ++cycles)
+    if (const auto issued = logic.issue(); issued && issued->is_last) return cycles + issued->result;
+}
 
-Throughput throughput(const std::vector<IssueSlot>& slots, const Machine::Vertex& spec) {
+// By its issue alone, however many vertices it holds.
+Throughput issue_rates(const std::vector<IssueSlot>& slots, const Machine::Vertex& spec) {
   constexpr std::uint64_t kMostVertices =
       4096;  // if the issue has not come back to a state by then: on average
   IssueLogic logic(slots, spec);
@@ -49,6 +58,15 @@ Throughput throughput(const std::vector<IssueSlot>& slots, const Machine::Vertex
     if (!is_new) return between(found->second, sums);
     if (sums.vertices == kMostVertices) return between({0, 0, std::vector<Cycle>(slots.size())}, sums);
   }
+}
+
+}  // namespace
+
+Throughput throughput(const std::vector<IssueSlot>& slots, const Machine::Vertex& spec) {
+  Throughput rates = issue_rates(slots, spec);
+  rates.clocks_per_vertex = std::max(
+      rates.clocks_per_vertex, static_cast<double>(latency(slots, spec)) / VertexUnit::most_vertices(spec));
+  return rates;
 }
 
 double clocks_per_vertex(const isa::Program& program, const Machine::Vertex& spec) {
