@@ -29,7 +29,7 @@ std::string warning_of_none(std::size_t drawn, std::size_t left_out) {
                      left_out > 0
                          ? "each is before the near plane, outside of the picture, or without a finite "
                            "footprint"
-                         : "no voxel has any opacity");
+                         : "no voxel has any opacity, or a cell of any size");
 }
 
 }  // namespace

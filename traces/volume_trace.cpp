@@ -26,8 +26,7 @@ using glm::dmat3;
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr std::uint32_t kCorners = 4, kIndices = 6;  // of a quad
-constexpr std::int16_t kCornerSigns[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+constexpr std::int16_t kCornerSigns[kQuadVertices][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 
 class VertexWriter {
  public:
@@ -124,8 +123,9 @@ class Recorder {
     voxel.low = print->center - reach;
     voxel.high = print->center + reach;
     voxel.conic = dvec3(print->conic[0][0], 2 * print->conic[0][1], print->conic[1][1]);
-    voxel.drawn = voxel.high.x > 0 && voxel.high.y > 0 && voxel.low.x < static_cast<float>(view_.width) &&
-                  voxel.low.y < static_cast<float>(view_.height);
+    const bool in_frame = voxel.high.x > 0 && voxel.high.y > 0 &&
+                          voxel.low.x < static_cast<float>(view_.width) &&
+                          voxel.low.y < static_cast<float>(view_.height);
     const dvec3 turned = view_.camera_direction(splat.normal);
     const dvec3 normal = turned == dvec3(0) ? turned : glm::normalize(turned);
     voxel.flat = splat.flatness > 0;
@@ -135,6 +135,7 @@ class Recorder {
     if (voxel.flat)
       weight *= kernels::flattened_weight(glm::dot(normal, glm::normalize(camera)), flattening(splat));
     voxel.weight = static_cast<float>(weight);
+    voxel.drawn = in_frame && voxel.weight > 0;  // not where it was too small for a float
     voxel.opacity =
         static_cast<float>(weight * print->peak * kernels::opacity_scale(view_, settings_.cutoff));
     return voxel;
@@ -197,7 +198,7 @@ class Recorder {
     std::vector<std::byte>& bytes = result_.trace.buffers[kSheetVertices].bytes;
     const auto base = static_cast<std::uint32_t>(bytes.size() / kSheetStride);
     VertexWriter writer(bytes);
-    const dvec2 corners[kCorners] = {
+    const dvec2 corners[kQuadVertices] = {
         {r.left, r.top}, {r.right, r.top}, {r.right, r.bottom}, {r.left, r.bottom}};
     for (const dvec2& corner : corners) {
       const dvec2 from_center = corner - view_.center();
@@ -225,7 +226,7 @@ class Recorder {
     draw.vertex_stride = kSheetStride;
     draw.attributes = {{0, VertexFormat::float3, 0}, {1, VertexFormat::float2, 12}};
     draw.base_vertex = base;
-    draw.index_count = kIndices;
+    draw.index_count = kQuadIndices;
     const float shade = static_cast<float>(steps) / 255;
     draw.constants = {{shade, shade, shade, shade}};
     return draw;
@@ -288,7 +289,7 @@ class Recorder {
     for (std::size_t first = 0; first < numbers.size(); first += kSurfelsADraw) {
       const std::size_t count = std::min(kSurfelsADraw, numbers.size() - first);
       draw.base_vertex = static_cast<std::uint32_t>(bytes.size() / draw.vertex_stride);
-      draw.index_count = static_cast<std::uint32_t>(count) * kIndices;
+      draw.index_count = static_cast<std::uint32_t>(count) * kQuadIndices;
       for (const std::uint32_t k : std::span(numbers).subspan(first, count)) {
         stop_if_asked();
         add_vertices(kind, planner_.weight_of(level), k, bytes);

@@ -98,6 +98,7 @@ TEST_F(NrrdFile, WordsAreReadInLargeLetters) {
 
 TEST_F(NrrdFile, NamesTheLineOfWhatIsWrong) {
   EXPECT_EQ(error_of("PLY\n"), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
+  EXPECT_EQ(error_of("NRRD0004x\n"), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
   EXPECT_EQ(error_of(""), "a.nrrd:1: the first line is not \"NRRD000N\", expected a NRRD file");
   EXPECT_EQ(
       error_of(header("block", "1 1 1")),

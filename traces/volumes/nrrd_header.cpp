@@ -49,7 +49,9 @@ class Reader {
   }
 
   NrrdHeader read() {
-    if (!next_line() || !line_.starts_with("NRRD000"))
+    constexpr std::string_view kMagic = "NRRD000";  // and a digit
+    if (!next_line() || !line_.starts_with(kMagic) || line_.size() != kMagic.size() + 1 ||
+        line_.back() < '1' || line_.back() > '9')
       fail("the first line is not \"NRRD000N\"", "a NRRD file");
     while (next_line() && !line_.empty()) {
       if (trimmed(line_).empty()) fail("a line of blanks", "an empty line at the end of the header");

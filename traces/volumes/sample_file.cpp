@@ -26,13 +26,10 @@ std::vector<kernels::VolumeSample> read_samples(const std::filesystem::path& pat
     const double radius = static_cast<double>(point.radius);
     double sum = double{point.radius} + points.values[i];
     for (int axis = 0; axis < 3; ++axis) sum += double{point.position[axis]} + point.normal[axis];
-    if (!std::isfinite(sum) || !(radius >= 1e-9 && radius <= 1e9)) {
-      throw UserError(
-          file, 0,
-          fmt::format("vertex {} is not finite or of radius {}, expected finite numbers and a radius "
-                      "from 1e-9 to 1e9",
-                      i, point.radius));
-    }
+    if (!std::isfinite(sum))
+      throw UserError(file, 0, fmt::format("vertex {} has a NaN or infinity, expected finite numbers", i));
+    if (!(point.radius >= 1e-9f && point.radius <= 1e9f))
+      throw UserError(file, 0, fmt::format("vertex {} has radius {}, expected 1e-9 to 1e9", i, point.radius));
     samples.push_back({.position = point.position,
                        .variance = glm::dmat3(kernel_variance * radius * radius),
                        .cell = radius * radius * radius,

@@ -326,14 +326,15 @@ TEST_F(VolumeKinds, SaysWhatIsWrong) {
             "bad.ply: property value of element vertex is missing, expected x, y, z, value and radius");
   EXPECT_EQ(ply_error("property float value\nend_header\n0 0 0 1\n"),
             "bad.ply: property radius of element vertex is missing, expected x, y, z, value and radius");
-  for (const char* wrong : {"0 0 0 1 0", "0 0 nan 1 1", "0 0 0 inf 1"}) {
-    EXPECT_TRUE(
-        ply_error(std::string("property float value\nproperty float radius\nend_header\n") + wrong + "\n")
-            .starts_with("bad.ply: vertex 0 is not finite or of radius "))
-        << wrong;
-  }
+  const auto vertex_error = [&](const std::string& vertex) {
+    return ply_error("property float value\nproperty float radius\nend_header\n" + vertex + "\n");
+  };
+  for (const char* wrong : {"0 0 nan 1 1", "0 0 0 inf 1", "0 0 0 1 nan"})
+    EXPECT_EQ(vertex_error(wrong), "bad.ply: vertex 0 has a NaN or infinity, expected finite numbers");
+  EXPECT_EQ(vertex_error("0 0 0 1 0"), "bad.ply: vertex 0 has radius 0, expected 1e-9 to 1e9");
+  EXPECT_EQ(vertex_error("0 0 0 1 1e-9"), "no error");
   EXPECT_EQ(ply_error("property float value\nproperty float radius\nend_header\n3e38 3e38 0 1 1\n")
-                .find("vertex 0 is not finite"),
+                .find("vertex 0 has a NaN"),
             std::string::npos)
       << "its sum is not, in single precision";
 }

@@ -58,43 +58,56 @@ struct Lanes {
   }
 };
 
+HWY_INLINE V3 cross(const V3& a, const V3& b) {
+  const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, s), hn::Mul(q, r)); };
+  return {minor(a.y, a.z, b.y, b.z), minor(a.z, a.x, b.z, b.x), minor(a.x, a.y, b.x, b.y)};
+}
+
+// Its determinant by itself: from these three it would be what rounding leaves of two products that are equal
+// but for it, where a splat close to the eye's plane is a thousand times longer than wide.
 struct Symmetric2 {
-  V xx, xy, yy;
+  V xx, xy, yy, determinant;
 };
 
 // The upper 2x2 of J C J^T for rows a and b of J, of C flattened along n by k (Eq. 31, 37):
-// C - k (n (C n)^T + (C n) n^T) + k^2 (n C n) n n^T.
+// C - k (n (C n)^T + (C n) n^T) + k^2 (n C n) n n^T. Its determinant is w^T adj(C) w (Cauchy and Binet) of
+// w = adj(1 - k n n^T) (a x b).
 HWY_INLINE Symmetric2 projected(const V (&c)[6], const V3& a, const V3& b, const V3& n, V k) {
-  const auto times = [&](const V3& v) HWY_ATTR {
-    return V3{dot({c[0], c[1], c[2]}, v), dot({c[1], c[3], c[4]}, v), dot({c[2], c[4], c[5]}, v)};
+  const V3 first{c[0], c[1], c[2]}, second{c[1], c[3], c[4]}, third{c[2], c[4], c[5]};
+  const auto times = [&](const V3& v) HWY_ATTR { return V3{dot(first, v), dot(second, v), dot(third, v)}; };
+  const auto determinant = [&](const V3& w) HWY_ATTR {
+    return hn::Add(
+        hn::Add(hn::Mul(w.x, dot(cross(second, third), w)), hn::Mul(w.y, dot(cross(third, first), w))),
+        hn::Mul(w.z, dot(cross(first, second), w)));
   };
-  const V3 ca = times(a), cb = times(b);
-  Symmetric2 v{dot(a, ca), dot(a, cb), dot(b, cb)};
+  const V3 ca = times(a), cb = times(b), w = cross(a, b);
+  const Symmetric2 v{dot(a, ca), dot(a, cb), dot(b, cb), determinant(w)};
   if (hn::AllTrue(F{}, hn::Eq(k, hn::Zero(F{})))) return v;
+  const V left = hn::Sub(set(1.0f), k), along = hn::Mul(k, dot(n, w));
+  const V3 flat{hn::Add(hn::Mul(left, w.x), hn::Mul(along, n.x)),
+                hn::Add(hn::Mul(left, w.y), hn::Mul(along, n.y)),
+                hn::Add(hn::Mul(left, w.z), hn::Mul(along, n.z))};
   const V na = hn::Mul(k, dot(n, a)), nb = hn::Mul(k, dot(n, b));
   const V ca_n = dot(n, ca), cb_n = dot(n, cb), ncn = dot(n, times(n));
   const auto entry = [&](V initial, V p, V q, V cp, V cq) HWY_ATTR {
     return hn::Add(hn::Sub(initial, hn::Add(hn::Mul(p, cq), hn::Mul(q, cp))), hn::Mul(ncn, hn::Mul(p, q)));
   };
-  return {entry(v.xx, na, na, ca_n, ca_n), entry(v.xy, na, nb, ca_n, cb_n), entry(v.yy, nb, nb, cb_n, cb_n)};
+  return {entry(v.xx, na, na, ca_n, ca_n), entry(v.xy, na, nb, ca_n, cb_n), entry(v.yy, nb, nb, cb_n, cb_n),
+          determinant(flat)};
 }
 
-// V' and its determinant after the prefilter.
-HWY_INLINE V prefilter(VolumePrefilter filter, Symmetric2& v) {
-  const V determinant = hn::Max(hn::Sub(hn::Mul(v.xx, v.yy), square(v.xy)), hn::Zero(F{}));
-  if (filter == VolumePrefilter::none) return determinant;
+// V' + V_h.
+HWY_INLINE Symmetric2 prefiltered(VolumePrefilter filter, const Symmetric2& v) {
+  if (filter == VolumePrefilter::none) return v;
   const V one = set(1.0f), trace = hn::Add(v.xx, v.yy);
-  if (filter == VolumePrefilter::ewa) {
-    v.xx = hn::Add(v.xx, one);
-    v.yy = hn::Add(v.yy, one);
-    return hn::Add(determinant, hn::Add(trace, one));
-  }
+  const V determinant = hn::Max(v.determinant, hn::Zero(F{}));
+  if (filter == VolumePrefilter::ewa)
+    return {hn::Add(v.xx, one), v.xy, hn::Add(v.yy, one), hn::Add(determinant, hn::Add(trace, one))};
   const V half = set(0.5f);
   const V distance = hn::Sqrt(hn::Add(square(hn::Mul(half, hn::Sub(v.xx, v.yy))), square(v.xy)));
   const V larger = hn::Add(hn::Mul(half, trace), distance);
   const V grow = hn::Max(one, hn::Div(larger, determinant));
-  v = {hn::Mul(v.xx, grow), hn::Mul(v.xy, grow), hn::Mul(v.yy, grow)};
-  return hn::Mul(determinant, square(grow));
+  return {hn::Mul(v.xx, grow), hn::Mul(v.xy, grow), hn::Mul(v.yy, grow), hn::Mul(determinant, square(grow))};
 }
 
 // What becomes of the splats of one register.
@@ -134,7 +147,8 @@ HWY_INLINE Symmetric2 variance(const FastVolumeView& view, const Lanes& lanes, V
   if (view.kernels == FastKernels::spherical) {
     const V factor = hn::Mul(set(view.variance[0]), square(scale)), one = set(1.0f);
     return {hn::Mul(factor, hn::Add(one, square(slope_x))), hn::Mul(factor, hn::Mul(slope_x, slope_y)),
-            hn::Mul(factor, hn::Add(one, square(slope_y)))};
+            hn::Mul(factor, hn::Add(one, square(slope_y))),
+            hn::Mul(square(factor), hn::Add(one, hn::Add(square(slope_x), square(slope_y))))};
   }
   const V3 a{scale, zero, hn::Neg(hn::Mul(scale, slope_x))};
   const V3 b{zero, hn::Neg(scale), hn::Neg(hn::Mul(scale, slope_y))};
@@ -172,10 +186,9 @@ HWY_INLINE void project_batch(const FastVolumeView& view, const SpecularTable& t
     x = hn::Add(set(view.center_x), hn::Mul(eta, slope_x));
     y = hn::Add(set(view.center_y), hn::Mul(eta, slope_y));
   }
-  Symmetric2 v = variance(view, lanes, scale, slope_x, slope_y, normal);
-  const V determinant = prefilter(view.prefilter, v);
+  const Symmetric2 v = prefiltered(view.prefilter, variance(view, lanes, scale, slope_x, slope_y, normal));
   V opacity = hn::Mul(hn::Mul(lanes[Lanes::weight], set(view.opacity_scale)),
-                      hn::Div(determinant_j, hn::Sqrt(determinant)));
+                      hn::Div(determinant_j, hn::Sqrt(v.determinant)));
   const V flatness = lanes[Lanes::flatness];
   opacity = hn::IfThenElse(hn::Gt(flatness, zero),
                            hn::Mul(opacity, flattened_weight(dot(normal, ray), flatness)), opacity);
@@ -183,7 +196,7 @@ HWY_INLINE void project_batch(const FastVolumeView& view, const SpecularTable& t
   const auto color = [&](Lanes::Component c) HWY_ATTR {
     return hn::Mul(opacity, hn::Min(hn::Add(hn::Mul(lanes[c], light.matt), light.shine), one));
   };
-  const V inverse = hn::Div(one, determinant);
+  const V inverse = hn::Div(one, v.determinant);
   const V values[9] = {x,
                        y,
                        hn::Mul(v.yy, inverse),
@@ -193,7 +206,7 @@ HWY_INLINE void project_batch(const FastVolumeView& view, const SpecularTable& t
                        color(Lanes::green),
                        color(Lanes::blue),
                        opacity};
-  V sum = zero;  // finite where all of them are
+  V sum = hn::Mul(v.determinant, zero);  // finite where all of them are
   for (std::size_t i = 0; i < 9; ++i) {
     hn::Store(values[i], F{}, batch.values[i]);
     sum = hn::Add(sum, hn::Mul(values[i], zero));

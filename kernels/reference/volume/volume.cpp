@@ -20,10 +20,6 @@ auto difference(const Volume& volume, const glm::ivec3& voxel, int axis, const A
   return (at(after) - at(before)) / static_cast<double>(std::max(1, after[axis] - before[axis]));
 }
 
-glm::dmat3 outer(const glm::dvec3& a, const glm::dvec3& b) {
-  return glm::outerProduct(a, b);
-}
-
 }  // namespace
 
 Volume centered_volume(const glm::ivec3& size, const glm::dvec3& spacing) {
@@ -95,7 +91,7 @@ PlacedSamples curvilinear_samples(const Volume& grid, double kernel_variance, co
 }
 
 glm::dmat3 flattened(const glm::dmat3& variance, const glm::dvec3& normal, double s) {
-  const glm::dmat3 squeeze = glm::dmat3(1.0) - (1 - 1 / s) * outer(normal, normal);
+  const glm::dmat3 squeeze = glm::dmat3(1.0) - (1 - 1 / s) * glm::outerProduct(normal, normal);
   return squeeze * variance * squeeze;
 }
 

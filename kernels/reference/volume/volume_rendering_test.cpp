@@ -179,6 +179,17 @@ TEST(VolumeRendering, EmptyVoxelsAreLeftOut) {
   EXPECT_EQ(splats.splats[0].position, glm::vec3(volume.position({3, 1, 0})));
 }
 
+// As of a curvilinear grid whose layers lie in one another.
+TEST(VolumeRendering, SamplesWhoseCellHasNoSizeAreEmpty) {
+  const VolumeSample flat{.position = {1, 2, 3}, .variance = glm::dmat3(1), .cell = 0, .value = 1};
+  VolumeSample whole = flat;
+  whole.cell = 1;
+  const VolumeSplats splats = sample_splats(std::vector{flat, whole, flat}, kGlass, 1);
+  EXPECT_EQ(splats.splats.size(), 1u);
+  EXPECT_EQ(splats.kernels.size(), 1u);
+  EXPECT_EQ(splats.empty, 2u);
+}
+
 TEST(VolumeRendering, VoxelsWithoutAFootprintLeaveNoTrace) {
   VolumeSplats splats = grid_splats(constant_volume({5, 5, 5}, glm::dvec3(1)), kGlass);
   splats.splats[3].position.x = NAN;
@@ -244,6 +255,29 @@ TEST(FastVolume, IsThePictureOfTheDoublePrecisionRenderer) {
         double most = 0;
         for (const glm::dvec4& pixel : exact.pixels) most = std::max(most, pixel.w);
         EXPECT_GT(most, 0.5);
+      }
+    }
+  }
+}
+
+// Whose footprints are thousands of times longer than wide.
+TEST(FastVolume, IsThatPictureWithVoxelsNextToTheEyesPlane) {
+  for (const double spacing_z : {0.5, 0.3}) {  // spherical kernels, and others
+    const Volume volume = constant_volume({4, 4, 4}, {0.5, 0.5, spacing_z});
+    for (const std::optional<glm::dvec3>& normal :
+         {std::optional<glm::dvec3>(), std::optional(glm::normalize(glm::dvec3(1, 2, 3)))}) {
+      const VolumeSplats splats =
+          grid_splats(volume, kGlass, 1, {.low = normal ? 0.0 : 2.0, .high = 1, .s = 100, .normal = normal});
+      FastVolume fast(splats);
+      for (const double distance : {0.1, 0.01, 1e-3, 1e-4}) {
+        const double z = -0.5 * spacing_z - distance;
+        const View view = look_at({0.15, 0.1, z}, {0.15, 0.1, 1.5}, {0, 1, 0}, 60, 64, 48, 1e-6, 10);
+        const VolumeSettings settings{.light = kUnshaded};
+        const VolumePicture exact = volume_picture(view, splats, settings);
+        const FastVolumePicture single = fast.draw(view, settings);
+        EXPECT_LT(difference(single, exact), kTableError)
+            << spacing_z << " " << normal.has_value() << " " << distance;
+        EXPECT_EQ(single.left_out, exact.left_out);
       }
     }
   }

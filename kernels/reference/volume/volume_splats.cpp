@@ -88,8 +88,9 @@ VolumeSplats grid_splats(const Volume& volume, const TransferFunction& transfer,
         const double value = static_cast<double>(volume.value(voxel));
         const VoxelLook look = transfer(value);
         if (!(look.opacity > 0)) continue;
-        layer.push_back(
-            classified(volume.position(voxel), value, look, gradient(volume, voxel), cell, flattening));
+        const VolumeSplat splat =
+            classified(volume.position(voxel), value, look, gradient(volume, voxel), cell, flattening);
+        if (splat.weight > 0) layer.push_back(splat);
       }
     }
   });
@@ -120,12 +121,13 @@ VolumeSplats sample_splats(std::span<const VolumeSample> samples, const Transfer
     const VolumeSample& sample = samples[i];
     const double value = static_cast<double>(sample.value);
     const VoxelLook look = transfer(value);
-    if (!(look.opacity > 0)) {
+    const VolumeSplat splat =
+        classified(sample.position, value, look, sample.gradient, sample.cell, flattening);
+    if (!(splat.weight > 0)) {
       ++result.empty;
       continue;
     }
-    result.splats.push_back(
-        classified(sample.position, value, look, sample.gradient, sample.cell, flattening));
+    result.splats.push_back(splat);
     result.splats.back().kernel = static_cast<std::uint32_t>(result.kernels.size());
     result.kernels.push_back(sample.variance);
     if (!layers.voxels.empty()) result.layers.voxels.push_back(layers.voxels[i]);
