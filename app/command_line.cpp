@@ -39,7 +39,7 @@ void listen_to_signals() {
 // What was printed has arrived, also where standard output is a file on a full disk.
 void flush_output() {
   std::cout.flush();
-  if (!std::cout || std::fflush(stdout) != 0)
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)  // of a line before, too
     throw std::runtime_error("standard output: writing failed (is the disk full?)");
 }
 

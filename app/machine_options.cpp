@@ -10,7 +10,10 @@ namespace splatscope::app {
 
 void MachineOptions::add_to(CLI::App& command) {
   command.add_option("--machine", name, "name of a machine, or a TOML file")->capture_default_str();
-  command.add_option("--set", settings, "KEY=VALUE: a parameter of the machine, as `machine show` lists it")
+  command
+      .add_option(
+          "--set", settings,
+          "KEY=VALUE: a parameter of the machine, as `machine show` lists it; --set again for another")
       ->allow_extra_args(false);
   command
       .add_option("--program", programs,

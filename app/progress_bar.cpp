@@ -8,6 +8,15 @@
 #include <cstdio>
 
 namespace splatscope::app {
+namespace {
+
+// A terminal that has gone away is no reason to end the work, so nobody looks whether this arrives.
+void put(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
 
 std::string time_left(double seconds_so_far, double fraction_done) {
   constexpr double kMost = 100 * 3600;  // beyond it no guess is worth much
@@ -25,7 +34,7 @@ ProgressBar::ProgressBar(std::string label, bool quiet)
       start_(std::chrono::steady_clock::now()) {}
 
 void ProgressBar::clear() {
-  if (!shown_.empty()) fmt::print(stderr, "\r\x1b[K");  // erase to the end of the line
+  if (!shown_.empty()) put("\r\x1b[K");  // erase to the end of the line
   shown_.clear();
 }
 
@@ -40,8 +49,7 @@ void ProgressBar::show(double fraction_done) {
                                  static_cast<int>(100 * done), time_left(so_far.count(), done));
   if (line == shown_) return;
   shown_ = std::move(line);
-  fmt::print(stderr, "{}", shown_);
-  std::fflush(stderr);
+  put(shown_);
 }
 
 std::function<void(double)> ProgressBar::callback() {

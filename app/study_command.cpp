@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <iostream>
 #include <memory>
 
 #include "app/commands.h"
@@ -24,7 +25,7 @@ void add_study_command(CLI::App& app, Invocation& invocation) {
   command->callback([options, &invocation] {
     if (options->list) {
       for (const studies::Study& study : studies::own_studies())
-        fmt::print("{:<14} {}\n", study.name, study.what);
+        std::cout << fmt::format("{:<14} {}\n", study.name, study.what);
       return;
     }
     if (options->names.empty()) throw CLI::RequiredError("NAME");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -26,17 +27,17 @@ struct Options {
 };
 
 void print(const studies::Sweep& sweep) {
-  for (const std::string& line : sweep.replaced) fmt::print("{}\n", line);
+  for (const std::string& line : sweep.replaced) std::cout << line << '\n';
   for (const studies::SweepPoint& point : sweep.points) {
     std::string settings;
     for (const auto& [key, value] : point.settings) settings += fmt::format("{}={}  ", key, value);
     for (const auto& frame : point.results["frames"]) {
-      fmt::print("{}{} cycles  {:.2f} fps\n", settings, frame["cycles"].get<std::uint64_t>(),
-                 frame["frames_per_second"].get<double>());
+      std::cout << fmt::format("{}{} cycles  {:.2f} fps\n", settings, frame["cycles"].get<std::uint64_t>(),
+                               frame["frames_per_second"].get<double>());
     }
   }
   for (const auto& path : sweep.damaged)
-    fmt::print("{}: damaged or of another format; computed again\n", path.string());
+    std::cout << path.string() << ": damaged or of another format; computed again\n";
 }
 
 void run(const Options& options, bool quiet) {
@@ -60,7 +61,8 @@ void run(const Options& options, bool quiet) {
   studies::report_of(sweep, machine, fidelity).write(files.place("report.html"));
   files.commit(studies::results_of(sweep, machine, fidelity));
   print(sweep);
-  fmt::print("{:.1f} s; results.json, sweep.csv and report.html in {}\n", sweep.host_seconds, options.out);
+  std::cout << fmt::format("{:.1f} s; results.json, sweep.csv and report.html in {}\n", sweep.host_seconds,
+                           options.out);
 }
 
 }  // namespace

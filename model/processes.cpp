@@ -62,6 +62,7 @@ void say(int file, std::size_t number, const std::string& text, Kind kind) {
 [[noreturn]] void fail(const std::string& text, Kind kind) {
   if (kind != Kind::user_error) throw std::runtime_error(text);
   const std::size_t colon = text.find(": ");  // as every user's error has it, behind the file and its line
+  if (colon == std::string::npos) throw std::runtime_error(text);
   throw UserError(text.substr(0, colon), 0, text.substr(colon + 2));
 }
 
@@ -81,6 +82,8 @@ void end_worker_threads() {
   for (std::size_t number = first; number < count; number += step) {
     try {
       say(file, number, task(number), Kind::answer);
+    } catch (const Interrupted&) {
+      ::_exit(1);  // asked alone: the parent says that a process ended early
     } catch (const UserError& error) {
       say(file, number, error.what(), Kind::user_error);
     } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 #include "studies/plot.h"
 
 #include <fmt/format.h>
+#include <stdlib.h>
 
 #include <cmath>
 #include <cstdio>
@@ -9,9 +10,9 @@
 #include <iterator>
 #include <numbers>
 #include <stdexcept>
+#include <system_error>
 
 #include "model/shell_word.h"
-#include "traces/output_files.h"
 
 namespace splatscope::studies {
 namespace {
@@ -25,6 +26,27 @@ std::string quoted(const std::string& text) {
   }
   return result + "'";
 }
+
+// Of this plot alone: others, and who else has the machine, have theirs.
+class ScriptFolder {
+ public:
+  ScriptFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "splatscope-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for gnuplot's script");
+    path_ = name;
+  }
+  ~ScriptFolder() {
+    std::error_code error;  // a failure to tidy up must not hide the failure that led here
+    std::filesystem::remove_all(path_, error);
+  }
+  ScriptFolder(const ScriptFolder&) = delete;
+  ScriptFolder& operator=(const ScriptFolder&) = delete;
+
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 std::string script_of(const Plot& plot) {
   std::string script =
@@ -71,21 +93,19 @@ Plot::Series ellipse(const std::string& name, const glm::dmat2& axes) {
 // What gnuplot says besides, such as warnings of an axis without extent, is no part of the drawing; the
 // user's own settings (-d) are none of it either.
 std::string svg_of(const Plot& plot) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
-  const traces::OutputFile script(folder / "splatscope.gnuplot"),
-      errors(folder / "splatscope.gnuplot-errors");
-  if (!(std::ofstream(script.temporary()) << script_of(plot)).flush())
-    throw std::runtime_error(script.temporary().string() + ": writing failed (is the disk full?)");
-  std::FILE* pipe = ::popen(fmt::format("gnuplot -d {} 2>{}", shell_word(script.temporary().string()),
-                                        shell_word(errors.temporary().string()))
-                                .c_str(),
-                            "r");
+  const ScriptFolder folder;
+  const std::filesystem::path script = folder / "script", errors = folder / "errors";
+  if (!(std::ofstream(script) << script_of(plot)).flush())
+    throw std::runtime_error(script.string() + ": writing failed (is the disk full?)");
+  std::FILE* pipe = ::popen(
+      fmt::format("gnuplot -d {} 2>{}", shell_word(script.string()), shell_word(errors.string())).c_str(),
+      "r");
   if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");
   std::string text;
   char part[4096];
   for (std::size_t n = 0; (n = std::fread(part, 1, sizeof part, pipe)) > 0;) text.append(part, n);
   if (::pclose(pipe) != 0) {
-    std::ifstream said(errors.temporary());
+    std::ifstream said(errors);
     const std::string why{std::istreambuf_iterator<char>(said), {}};
     throw std::runtime_error(fmt::format("gnuplot failed ({}), expected the package gnuplot-nox", why));
   }

@@ -26,7 +26,8 @@ bool is_result(const fs::path& name) {
 
 std::vector<std::string> earlier_results(const fs::path& folder) {
   std::vector<std::string> names;
-  if (!fs::is_regular_file(folder / kResults)) return names;
+  std::error_code error;  // what cannot be looked at is found, and said, by who writes there
+  if (!fs::is_regular_file(folder / kResults, error)) return names;
   std::ifstream in(folder / kResults, std::ios::binary);
   const auto json = nlohmann::json::parse(in, nullptr, false);
   if (!json.is_object() || !json.contains("host") || !json.contains("files")) return names;
@@ -38,8 +39,9 @@ std::vector<std::string> earlier_results(const fs::path& folder) {
 void remove_earlier_results(const fs::path& folder) {
   std::vector<std::string> names = earlier_results(folder);
   names.emplace_back(kResults);  // last: it says what else is to go
+  std::error_code error;         // a link to itself is no folder
   for (const std::string& name : names)
-    if (!fs::is_directory(folder / name)) fs::remove(folder / name);
+    if (!fs::is_directory(folder / name, error)) fs::remove(folder / name);
 }
 
 ResultFiles::ResultFiles(fs::path folder)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iostream>
 
 #include "model/error.h"
 #include "studies/json_text.h"
@@ -53,7 +54,7 @@ void Findings::result(std::string_view key, nlohmann::ordered_json value) {
 }
 
 void Findings::say(std::string_view text) {
-  fmt::print("{}", text);
+  std::cout << text;  // a failure is told at the end, when all files are written
 }
 
 void Findings::text(std::string_view text) {

@@ -18,6 +18,7 @@
 
 #include "model/error.h"
 #include "model/processes.h"
+#include "model/stop.h"
 #include "model/testing/scratch_folder.h"
 #include "studies/run_results.h"
 #include "studies/work_cache.h"
@@ -391,6 +392,13 @@ TEST(Processes, AnswersComeInOrderAndAFailureIsThrown) {
                            [](std::size_t) -> std::string { throw UserError("a.toml", 3, "wrong: x"); });
             }),
             "a.toml:3: wrong: x");
+  // It alone was asked to stop, and not by the parent.
+  try {
+    in_processes(2, 2, [](std::size_t) -> std::string { throw Interrupted(); });
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "a process ended early");
+  }
   EXPECT_THROW(in_processes(4, 2, [](std::size_t i) -> std::string { return i == 1 ? ::_exit(3), "" : "x"; }),
                std::runtime_error);
 }

@@ -215,7 +215,7 @@ WorkStream stream_of(std::string_view body, const Trace& trace) {
 
 std::string work_key(const Trace& trace, const RenderOptions& options) {
   Writer text;
-  const std::vector<std::byte> stored = traces::trace_bytes(trace);
+  const std::vector<std::byte> stored = traces::trace_bytes(trace, "--cache");
   constexpr const char* kProgram = "/proc/self/exe";
   const std::string program = bytes_of(kProgram);
   if (program.empty())
@@ -243,8 +243,10 @@ std::filesystem::path WorkCache::path_of(const std::string& key) const {
 
 WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, WorkStream& stream) const {
   const std::filesystem::path path = path_of(key);
-  if (!std::filesystem::exists(path)) return Found::no;
-  if (!std::filesystem::is_regular_file(path))
+  std::error_code error;
+  const std::filesystem::file_type type = std::filesystem::status(path, error).type();
+  if (type == std::filesystem::file_type::not_found) return Found::no;
+  if (type != std::filesystem::file_type::regular)
     throw UserError(path.string(), 0, "stands in the place of a file of the cache, expected that or nothing");
   const std::string bytes = bytes_of(path);
   Header header;

@@ -100,13 +100,15 @@ class Forked {
     ::_exit(EXIT_FAILURE);
   }
 
+  // An exception that nobody catches ends it here: above are the test's functions, which would go on twice.
   [[noreturn]] void run(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                        const Limits& limits) const {
+                        const Limits& limits) const noexcept {
     std::filesystem::current_path(folder);
     const auto output = limits.output.empty() ? out() : limits.output;
     ::dup2(error_[1], STDERR_FILENO);
     ::close(error_[1]);
     redirect(output, O_WRONLY | O_CREAT, STDOUT_FILENO);
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // as a terminal: each line can fail
     redirect("/dev/null", O_RDONLY, STDIN_FILENO);
     limit(RLIMIT_CORE, rlim_t{0});
     limit(RLIMIT_CPU, limits.cpu_seconds);

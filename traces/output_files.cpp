@@ -76,7 +76,12 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
   if (is_standard_stream(path_))
     throw UserError(path_.string(), 0,
                     "is standard input, output or error of this run, expected a file of its own");
-  if (fs::is_symlink(path_, error)) path_ = fs::weakly_canonical(path_);  // the link stays
+  if (fs::is_symlink(path_, error)) {  // the link stays
+    const fs::path place = fs::weakly_canonical(path_, error);
+    if (error)
+      throw UserError(path_.string(), 0, "is a link that leads nowhere, expected a place for a file");
+    path_ = place;
+  }
   // The process's number keeps two runs apart that write to the same place; the last one to finish wins.
   temporary_ = path_.parent_path() /
                fmt::format(".{}.{}{}", path_.stem().string(), ::getpid(), path_.extension().string());

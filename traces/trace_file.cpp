@@ -112,6 +112,14 @@ std::size_t stored_size(const Trace& trace) {
   return size + kCommand * trace.commands.size();
 }
 
+// Its stored_size, which a file of FlatBuffers can have.
+std::size_t expect_storable(const Trace& trace, std::string_view name) {
+  const std::size_t size = stored_size(trace);
+  if (size >= FLATBUFFERS_MAX_BUFFER_SIZE)
+    throw UserError(name, 0, fmt::format("the trace would take {} bytes, expected less than 2 GiB", size));
+  return size;
+}
+
 // ---- reading
 
 // Unpacks a verified file. A hostile file may name the same bytes many times; what is copied out may
@@ -222,17 +230,13 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
 
 void write_trace(const Trace& trace, const std::filesystem::path& path) {
   check_trace(trace, path.string());
-  const std::size_t size = stored_size(trace);
-  if (size >= FLATBUFFERS_MAX_BUFFER_SIZE)
-    throw UserError(path.string(), 0,
-                    fmt::format("the trace would take {} bytes, expected less than 2 GiB", size));
-  fb::FlatBufferBuilder builder(size);
+  fb::FlatBufferBuilder builder(expect_storable(trace, path.string()));
   pack(builder, trace);
   write_file(path, std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize())));
 }
 
-std::vector<std::byte> trace_bytes(const Trace& trace) {
-  fb::FlatBufferBuilder builder(stored_size(trace));
+std::vector<std::byte> trace_bytes(const Trace& trace, std::string_view name) {
+  fb::FlatBufferBuilder builder(expect_storable(trace, name));
   pack(builder, trace);
   const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
   return {bytes.begin(), bytes.end()};

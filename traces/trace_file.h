@@ -21,8 +21,9 @@ inline constexpr int kMaxTextureEdge = 2048;  // texels: the limit of both machi
 // place cannot be written.
 void write_trace(const Trace& trace, const std::filesystem::path& path);
 
-// The bytes of such a file, without a check: traces of the same content have the same.
-std::vector<std::byte> trace_bytes(const Trace& trace);
+// The bytes of such a file, without a check of what they hold: traces of the same content have the same.
+// Throws UserError, in `name`, where they are too many for a file.
+std::vector<std::byte> trace_bytes(const Trace& trace, std::string_view name);
 
 // Throws UserError where the file cannot be read, is damaged, newer than this program, or breaks a rule of
 // check_trace. The memory taken is at most a small multiple of the file's size.

@@ -308,13 +308,21 @@ void assign(Machine& machine, std::string_view assignment, std::string_view opti
   if (value.find_first_of("\r\n") != std::string::npos) {
     place.fail(fmt::format("the value of {} has more than one line, expected {}", name, expected(parameter)));
   }
+  const auto fail = [&] {
+    place.fail(
+        fmt::format("{} has no valid value in \"{}\", expected {}", name, assignment, expected(parameter)));
+  };
+  if (value.find('#') != std::string::npos) fail();  // would begin a comment
   const bool is_text = std::holds_alternative<ChoiceField>(parameter.field) && !value.starts_with('"');
   toml::table table;
   try {
-    table = toml::parse(is_text ? fmt::format("value = \"{}\"", value) : "value = " + value);
+    if (is_text) {
+      table.insert("value", value);
+    } else {
+      table = toml::parse("value = " + value);
+    }
   } catch (const toml::parse_error&) {
-    place.fail(
-        fmt::format("{} has no valid value in \"{}\", expected {}", name, assignment, expected(parameter)));
+    fail();
   }
   assign(machine, parameter, *table.get("value"), place);
   machine.origins[name] = {std::string(kSet), std::string(option), "", 0};

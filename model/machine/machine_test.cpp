@@ -145,6 +145,12 @@ TEST(Machine, SetRefusesWhatAFileMayNotHold) {
             "--set: vertex.units is out of range (0), expected an integer, 1 to 16");
   EXPECT_EQ(set_message("vertex.units=two"),
             "--set: vertex.units has no valid value in \"vertex.units=two\", expected an integer, 1 to 16");
+  EXPECT_EQ(
+      set_message("vertex.units=2 # two"),
+      "--set: vertex.units has no valid value in \"vertex.units=2 # two\", expected an integer, 1 to 16");
+  for (const char* text :
+       {"numbers.frame=half\" #", "numbers.frame=\"half\" # a", "numbers.frame=h\\u0061lf"})
+    EXPECT_TRUE(set_message(text).starts_with("--set: numbers.frame ")) << text << ": " << set_message(text);
   EXPECT_EQ(set_message("vertex.units=2\n[clock]\ncore_megahertz=1"),
             "--set: the value of vertex.units has more than one line, expected an integer, 1 to 16");
   EXPECT_EQ(set_message("agp.units=2"),

@@ -59,6 +59,38 @@ TEST(BadInputs, StandardOutputBeyondTheDisk) {
     inputs.fails("/dev/full", arguments, {.output = "/dev/full"});
 }
 
+// What was computed is written before that is said.
+TEST(Output, IsWholeWhereStandardOutputIsFull) {
+  const ScratchFolder folder;
+  folder.file("tiny.toml", kTinyScene);
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"reproduce", "fig8", "--out", "out"},
+           {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2", "--out", "out"},
+           {"run", "tiny.toml", "--out", "out"}}) {
+    std::filesystem::remove_all(folder / "out");
+    const Outcome outcome = Forked(arguments, folder.path(), {.output = "/dev/full"}).outcome();
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.error, "splatscope: standard output: writing failed (is the disk full?)\n");
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/results.json")) << arguments[0];
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/report.html")) << arguments[0];
+  }
+}
+
+TEST(BadInputs, OutputWhereTheFileSystemRefusesTheName) {
+  Outputs inputs;
+  for (const auto& arguments : writers(std::string(300, 'n'))) inputs.refused("300 letters", arguments);
+  const auto loop = [&](const char* name) {
+    std::filesystem::create_symlink(std::filesystem::path(name).filename(), inputs.path() / name);
+  };
+  for (const char* name : {"there/results.json", "there/t.trace", "there/s.ply", "there/plain.bin"})
+    loop(name);
+  inputs.refused("a link to itself", {"run", "tiny.toml", "--out", "there"});
+  inputs.refused("a link to itself", {"reproduce", "fig8", "--out", "there"});
+  inputs.refused("a link to itself", {"record", "tiny.toml", "-o", "there/t.trace"});
+  inputs.refused("a link to itself", {"sample", "mesh.obj", "-n", "2000", "-o", "there/s.ply"});
+  inputs.refused("a link to itself", {"shader", "assemble", "plain.vs", "-o", "there/plain.bin"});
+}
+
 TEST(BadInputs, OutputWhereNothingCanBeWritten) {
   Outputs inputs;
   inputs.file("taken", "a file where a folder is wanted");

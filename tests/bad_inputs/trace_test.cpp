@@ -12,7 +12,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kHuge = 0xffffffffu;
 
 std::string text_of_trace(const Trace& trace) {
-  const std::vector<std::byte> bytes = traces::trace_bytes(trace);
+  const std::vector<std::byte> bytes = traces::trace_bytes(trace, "trace");
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
