@@ -101,10 +101,9 @@ void add_table(Report& report, const std::vector<WhatIfRow>& rows) {
                      fmt::format("{:.1f}", row.cells[2].psnr)});
   }
   report.table(
-      "The hardware of section 9 on the scenes of Table 1, at fidelity throughput: frames a second and the "
-      "busiest "
-      "unit; megabytes to and from video memory for a frame, normalised per surfel; PSNR per pixel and per "
-      "surfel.",
+      "Other hardware on the scenes of Table 1, at fidelity throughput: frames a second and the "
+      "busiest unit; megabytes to and from video memory for a frame, normalised per surfel; PSNR per pixel "
+      "and per surfel.",
       {{"hardware"},
        {"cost"},
        {"machine"},

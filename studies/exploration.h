@@ -4,7 +4,7 @@
 
 namespace splatscope::studies {
 
-// What the authors of Ren 2002 could have had: shorter programs, and the hardware of their section 9.
+// What the authors of Ren 2002 could have had: shorter programs, and other hardware.
 void study_exploration(Findings& findings, const Progress& progress);
 
 }  // namespace splatscope::studies

@@ -10,7 +10,8 @@
 #include "studies/study.h"
 #include "traces/scene.h"
 
-// The hardware that Ren 2002, section 9, wishes for, on the scenes of Table 1.
+// Hardware that Ren 2002 asks for (more vertex units and a division in the frame buffer, section 9; vertices
+// made from one, 6.1), wider frame buffers and point sprites, on the scenes of Table 1.
 namespace splatscope::studies {
 
 enum class Geometry : std::uint8_t {

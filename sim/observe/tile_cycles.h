@@ -10,8 +10,8 @@ namespace splatscope::sim {
 // How long the rasteriser was at each 8x8-pixel tile of the frame: the cycles in which it was busy, starved
 // or blocked since the quad before, whatever tile that was in, count for a quad's tile; those after a draw's
 // last quad for the tile of that. Summed over all draws these are all the cycles in which it was not idle,
-// unless no quad followed or went before. As the rasteriser waits where what is behind it is full, a tile's
-// cycles are what it cost the whole pipeline from there on.
+// unless no quad followed or went before. Where the rasteriser waits because what is behind it is full, they
+// tell what a tile cost from there on; where it is starved, what its triangles cost before.
 class TileCycles final : public Observer {
  public:
   static constexpr std::uint32_t kTile = 8;  // pixels

@@ -27,10 +27,9 @@ struct MeshCounts {
   std::size_t triangles_not_finite = 0;    // left out: a corner has a NaN or INF
   std::size_t triangles_out_of_range = 0;  // left out: a corner that does not exist
   std::size_t triangles_degenerate = 0;    // left out: no area
-  std::size_t normals_computed =
-      0;  // corners of triangles whose normal was missing: from the faces around them
-  std::size_t textures_unreadable = 0;   // the material's colour stands in
-  std::size_t materials_unreadable = 0;  // files of an OBJ file: light grey stands in
+  std::size_t normals_computed = 0;        // vertices whose normal was missing: from the faces around them
+  std::size_t textures_unreadable = 0;     // the material's colour stands in
+  std::size_t materials_unreadable = 0;    // files of an OBJ file: light grey stands in
 };
 
 // A point on a mesh with the attributes of its triangle's corners, interpolated.
