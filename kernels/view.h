@@ -36,6 +36,8 @@ struct View {
     const glm::dvec2 ray = (glm::dvec2(column, row) + 0.5 - center()) / eta;
     return z + z_t / std::sqrt(ray.x * ray.x + ray.y * ray.y + 1);
   }
+  // What 1 - near/z is multiplied by to be a depth in the frustum.
+  double depth_scale() const { return far_plane / (far_plane - near_plane); }
   // Camera z of a depth in the frustum: 0 at the near plane, 1 at the far plane.
   double z_of(double depth) const { return near_plane / (1 - depth * (far_plane - near_plane) / far_plane); }
 };

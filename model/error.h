@@ -15,15 +15,10 @@ class UserError : public std::runtime_error {
  public:
   UserError(std::string_view file, int line, std::string_view message)
       : std::runtime_error(line > 0 ? fmt::format("{}:{}: {}", file, line, message)
-                                    : fmt::format("{}: {}", file, message)),
-        line_(line) {}
+                                    : fmt::format("{}: {}", file, message)) {}
   // "file:line:column: ...", for programs.
   UserError(std::string_view file, int line, int column, std::string_view message)
-      : std::runtime_error(fmt::format("{}:{}:{}: {}", file, line, column, message)), line_(line) {}
-  int line() const { return line_; }
-
- private:
-  int line_;
+      : std::runtime_error(fmt::format("{}:{}:{}: {}", file, line, column, message)) {}
 };
 
 // A bug in splatscope itself: a broken invariant, a deadlock of the simulated machine.

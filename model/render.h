@@ -52,10 +52,9 @@ struct Rendered {
 // Draws every command of `trace`. The trace must hold together (traces/ checks one that comes from a file):
 // indices in range, index counts multiples of 3. Throws UserError where a program does not assemble.
 // `progress` is told the fraction done as a command begins, from 0 to below 1. `on_frame` is given every
-// frame of the trace
-// (`frame_ends`) when it is done, in order. `on_work` takes the work of each draw when it is done, in order;
-// it is then not kept. The next draws are begun meanwhile: `progress` and `on_work` are called from any
-// thread and beside one another.
+// frame of the trace (`frame_ends`) when it is done, in order. `on_work` takes the work of each draw when it
+// is done, in order; it is then not kept. The next draws are begun meanwhile: `progress` and `on_work` are
+// called from any thread and beside one another.
 Rendered render(const Trace& trace, const RenderOptions& options,
                 const std::function<void(double)>& progress = {},
                 const std::function<void(const Frame&)>& on_frame = {},

@@ -20,7 +20,7 @@ const Codec& load() {
       throw std::runtime_error(fmt::format("{}, expected it beside the program", reason));
     throw std::runtime_error(fmt::format("OpenImageIO's libraries could not be loaded: {}", reason));
   }
-  return reinterpret_cast<const Codec& (*)()>(entry)();
+  return *reinterpret_cast<const Codec* (*)()>(entry)();
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ OIIO::ImageSpec spec_of(const std::string& ending, const Picture& picture) {
 
 template <class Value>
 std::optional<Decoded<Value>> read(const Source& source, std::size_t most_channels, std::size_t most_side,
-                                   OIIO::TypeDesc type, std::string* why) {
+                                   const OIIO::TypeDesc& type, std::string* why) {
   why->clear();
   std::optional<OIIO::Filesystem::IOMemReader> memory;
   if (source.bytes)  // only read
@@ -37,7 +37,8 @@ std::optional<Decoded<Value>> read(const Source& source, std::size_t most_channe
   as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by their alpha
   OIIO::Filesystem::IOProxy* proxy = memory ? &*memory : nullptr;
   if (proxy)
-    as_stored.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);  // also asked of the configuration
+    as_stored.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR,
+                        static_cast<const void*>(&proxy));  // also asked of the configuration
   const auto input = OIIO::ImageInput::open(source.name, &as_stored, proxy);
   if (!input) {
     OIIO::geterror();  // else the library prints it at exit
@@ -76,7 +77,7 @@ class OpenImageIo : public Codec {
     if (!out || !out->open(name, spec_of(ending, picture)) ||
         !out->write_image(OIIO::TypeDesc::FLOAT, picture.values,
                           static_cast<OIIO::stride_t>(picture.pixel_stride * sizeof(float)), OIIO::AutoStride,
-                          OIIO::AutoStride, progress, &asked_to_stop) ||
+                          OIIO::AutoStride, progress, static_cast<void*>(&asked_to_stop)) ||
         !out->close())
       throw std::runtime_error("a picture could not be made: " + (out ? out->geterror() : OIIO::geterror()));
     if (asked_to_stop()) return {};  // it calls a picture written that it was told to give up
@@ -97,7 +98,7 @@ class OpenImageIo : public Codec {
 }  // namespace
 }  // namespace splatscope::pictures
 
-extern "C" const splatscope::pictures::Codec& splatscope_picture_codec() {
+extern "C" const splatscope::pictures::Codec* splatscope_picture_codec() {
   static const splatscope::pictures::OpenImageIo codec;
-  return codec;
+  return &codec;
 }

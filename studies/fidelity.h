@@ -36,10 +36,10 @@ struct FidelityRow {
   std::vector<Seed> seeds;
 };
 // From the fastest to the one that the others are measured by.
-constexpr Fidelity kFidelityLadder[] = {Fidelity::functional, Fidelity::throughput, Fidelity::sampled,
-                                        Fidelity::cycle, Fidelity::referee};
-constexpr std::uint64_t kSampleSeeds = 10;
-constexpr int kFidelityRepetitions = 3;  // of the study
+inline constexpr Fidelity kFidelityLadder[] = {Fidelity::functional, Fidelity::throughput, Fidelity::sampled,
+                                               Fidelity::cycle, Fidelity::referee};
+inline constexpr std::uint64_t kSampleSeeds = 10;
+inline constexpr int kFidelityRepetitions = 3;  // of the study
 
 // A frame as each machine draws it.
 struct FidelityFrame {

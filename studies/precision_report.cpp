@@ -53,10 +53,8 @@ void add_table(Report& report, std::span<const SwitchRow> rows, std::span<const 
   }
   report.table(
       "PSNR in dB (mean and 99th percentile of a pixel's largest error, in 1/255; fraction of pixels "
-      "saturated, and "
-      "black where they should not be) against the double-precision reference: each step alone in an "
-      "otherwise exact "
-      "pipeline, and on the GeForce4 with that one step changed.",
+      "saturated, and black where they should not be) against the double-precision reference: each step "
+      "alone in an otherwise exact pipeline, and on the GeForce4 with that one step changed.",
       columns, cells);
 }
 

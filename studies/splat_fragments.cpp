@@ -17,8 +17,6 @@
 namespace splatscope::studies {
 namespace {
 
-constexpr std::uint32_t kCorners = 4;  // vertices of a surfel
-
 // A splat as the view sees it.
 struct Splat {
   kernels::RayPlane plane;  // in units of y
@@ -95,7 +93,7 @@ std::uint32_t surfel_of(const Trace& trace, const Draw& draw, std::size_t triang
       &index,
       trace.buffers[draw.index_buffer].bytes.data() + (draw.first_index + 3 * triangle) * sizeof index,
       sizeof index);
-  return (draw.base_vertex + index) / kCorners;
+  return (draw.base_vertex + index) / traces::kQuadVertices;
 }
 
 template <class Visit>

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 namespace splatscope::traces {
 
@@ -17,7 +18,10 @@ class FuzzFile {
   explicit FuzzFile(std::string_view ending)
       : path_(std::filesystem::temp_directory_path() /
               fmt::format("splatscope-fuzz-{}{}", ::getpid(), ending)) {}
-  ~FuzzFile() { std::filesystem::remove(path_); }
+  ~FuzzFile() {
+    std::error_code error;  // a failure to tidy up must not end the fuzzer
+    std::filesystem::remove(path_, error);
+  }
   FuzzFile(const FuzzFile&) = delete;
   FuzzFile& operator=(const FuzzFile&) = delete;
 

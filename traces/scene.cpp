@@ -100,8 +100,7 @@ std::string describe(const MeshCounts& mesh) {
 }
 
 std::string_view name(Algorithm algorithm) {
-  constexpr std::string_view kNames[] = {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"};
-  return kNames[static_cast<int>(algorithm)];
+  return kAlgorithmNames[static_cast<std::size_t>(algorithm)];
 }
 
 }  // namespace splatscope::traces

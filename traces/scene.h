@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -40,6 +41,7 @@ struct Frame {
 
 // The three algorithms of Table 1 (Ren 2002, section 8).
 enum class Algorithm { no_ewa, ewa_per_pixel, ewa_per_surfel };
+inline constexpr std::array<std::string_view, 3> kAlgorithmNames{"no-ewa", "ewa-per-pixel", "ewa-per-surfel"};
 
 // Automatic: the card's own memory as far as it goes, then AGP memory.
 enum class VertexMemory { automatic, video, agp };

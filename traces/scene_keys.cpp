@@ -85,13 +85,13 @@ const std::array kKeys = {
              RealValue{[](S& s) -> double& { return s.camera.far; }, 1000, 1e-6, kFar}},
 
     SceneKey{"frame", "width", "pixels", "width of the picture",
-             IntegerValue{[](S& s) -> int& { return s.width; }, 512, 1, 4096}},
+             IntegerValue{[](S& s) -> int& { return s.width; }, 512, 1, kMostFrameEdge}},
     SceneKey{"frame", "height", "pixels", "height of the picture",
-             IntegerValue{[](S& s) -> int& { return s.height; }, 512, 1, 4096}},
+             IntegerValue{[](S& s) -> int& { return s.height; }, 512, 1, kMostFrameEdge}},
 
     SceneKey{"splatting", "algorithm", "", "row of Table 1",
              ChoiceValue{[](S& s, int i) { s.splatting.algorithm = Algorithm(i); },
-                         {"no-ewa", "ewa-per-pixel", "ewa-per-surfel"},
+                         {kAlgorithmNames.begin(), kAlgorithmNames.end()},
                          2}},
     SceneKey{"splatting", "cutoff", "", "c: a splat ends at sqrt(2c) standard deviations (Ren 2002, Eq. 14)",
              RealValue{[](S& s) -> double& { return s.splatting.cutoff; }, 1, 0.25, 8}},

@@ -13,9 +13,6 @@
 namespace splatscope::traces {
 namespace {
 
-constexpr std::uint32_t kCorners = 4;  // of a surfel's quad
-constexpr std::uint32_t kIndices = 6;  // two triangles
-
 // Of a surfel, in pixels where it lies at the near plane: larger ones are drawn of this size, which covers
 // any frame as well. Fourth powers of it appear in the EWA program, and must be finite floats.
 constexpr double kLargestRadius = 1e9;
@@ -28,8 +25,9 @@ float largest_radius(const kernels::View& view) {
 // Which corner of the program's quad lies about where each corner of o +- s +- t does, and so is to have its
 // weight. The quad winds as o +- s +- t does in this view: culling by the winding goes by the surfel's
 // normal.
-std::array<std::size_t, kCorners> corner_places(const kernels::SplatProgram& program,
-                                                const kernels::View& view, const kernels::Surfel& surfel) {
+std::array<std::size_t, kQuadVertices> corner_places(const kernels::SplatProgram& program,
+                                                     const kernels::View& view,
+                                                     const kernels::Surfel& surfel) {
   if (!program.screen_corners) return {0, 1, 2, 3};
   const glm::dvec3 o = view.camera_space(surfel.position);
   const auto on_screen = [&](const glm::dvec3& axis) {  // times z^2
@@ -43,8 +41,9 @@ std::array<std::size_t, kCorners> corner_places(const kernels::SplatProgram& pro
   const bool mirrored = s.x * t.y < t.x * s.y;
   const bool right = s.x + t.x < 0, up = mirrored ? s.x > t.x : s.x < t.x;
   const std::size_t first = up ? (right ? 2 : 3) : (right ? 1 : 0);
-  const std::size_t step = mirrored ? kCorners - 1 : 1;
-  return {first, (first + step) % kCorners, (first + 2) % kCorners, (first + 3 * step) % kCorners};
+  const std::size_t step = mirrored ? kQuadVertices - 1 : 1;
+  return {first, (first + step) % kQuadVertices, (first + 2) % kQuadVertices,
+          (first + 3 * step) % kQuadVertices};
 }
 
 Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& from,
@@ -53,7 +52,7 @@ Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& f
   const std::span weights = from.weights;
   Buffer buffer;
   const std::size_t bytes = kernels::vertex_bytes(program.fields);
-  buffer.bytes.resize(surfels.size() * kCorners * bytes);
+  buffer.bytes.resize(surfels.size() * kQuadVertices * bytes);
   std::byte* out = buffer.bytes.data();
   const float largest = largest_radius(view);
   for (std::size_t k = 0; k < surfels.size(); ++k) {
@@ -62,8 +61,8 @@ Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& f
     const Tangents axes = tangents(drawn);
     kernels::Surfel surfel{glm::dvec3(surfels[k].position), axes.s, axes.t, settings.sigma, 0,
                            glm::dvec3(surfels[k].color)};
-    const std::array<std::size_t, kCorners> places = corner_places(program, view, surfel);
-    for (std::size_t i = 0; i < kCorners; ++i) {
+    const std::array<std::size_t, kQuadVertices> places = corner_places(program, view, surfel);
+    for (std::size_t i = 0; i < kQuadVertices; ++i) {
       surfel.weight = weights[k][i];
       kernels::write_vertex(program.fields,
                             {surfel, kernels::kQuadCorners[places[i]], std::sqrt(2 * settings.cutoff)}, out);
@@ -108,8 +107,8 @@ struct RecordedPass {
   void append(const DrawnRange& range, const kernels::View& view, const Splatting& settings, Trace& trace) {
     draw.vertex_buffer = vertex_buffers[range.buffer];
     draw.constants = constants_of(program, view, settings, range.depth_offset);
-    draw.base_vertex = range.first * kCorners;
-    draw.index_count = range.count * kIndices;
+    draw.base_vertex = range.first * kQuadVertices;
+    draw.index_count = range.count * kQuadIndices;
     trace.commands.emplace_back(draw);
   }
 };
@@ -163,11 +162,11 @@ RecordedPass add_still_pass(const RecordedPass& splats, std::span<const SurfelBu
 }  // namespace
 
 Buffer quad_indices(std::size_t quads) {
-  constexpr std::uint16_t order[kIndices] = {0, 1, 2, 0, 2, 3};
+  constexpr std::uint16_t order[kQuadIndices] = {0, 1, 2, 0, 2, 3};
   Buffer buffer;
-  buffer.bytes.resize(quads * kIndices * sizeof(std::uint16_t));
-  for (std::size_t i = 0; i < quads * kIndices; ++i) {
-    const auto index = static_cast<std::uint16_t>(i / kIndices * kCorners + order[i % kIndices]);
+  buffer.bytes.resize(quads * kQuadIndices * sizeof(std::uint16_t));
+  for (std::size_t i = 0; i < quads * kQuadIndices; ++i) {
+    const auto index = static_cast<std::uint16_t>(i / kQuadIndices * kQuadVertices + order[i % kQuadIndices]);
     std::memcpy(buffer.bytes.data() + i * sizeof index, &index, sizeof index);
   }
   return buffer;
@@ -193,7 +192,7 @@ std::array<glm::dvec3, 4> quad_corners(const Surfel& surfel, const Splatting& se
   const Tangents axes = tangents(surfel);
   const double reach = std::sqrt(2 * settings.cutoff) * settings.sigma;
   std::array<glm::dvec3, 4> corners;
-  for (std::size_t i = 0; i < kCorners; ++i) {
+  for (std::size_t i = 0; i < kQuadVertices; ++i) {
     const glm::dvec2 y = reach * (2.0 * kernels::kQuadCorners[i] - 1.0);
     corners[i] = glm::dvec3(surfel.position) + y.x * axes.s + y.y * axes.t;
   }

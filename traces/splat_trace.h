@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "traces/scene.h"
 
 namespace splatscope::traces {
+
+// Vertices of the quad of a splat or voxel, and indices: of two triangles.
+inline constexpr std::uint32_t kQuadVertices = 4, kQuadIndices = 6;
 
 // s_k at the vertices of a surfel's quad, in the order of its corners: (0,0), (1,0), (1,1), (0,1).
 using VertexWeights = std::array<float, 4>;

@@ -14,10 +14,9 @@
 namespace splatscope::traces {
 namespace {
 
-constexpr std::uint32_t kMaxFrameEdge = 4096;  // pixels
-constexpr std::uint32_t kMaxStride = 1024;     // bytes: 16 attributes of 16 bytes, and room
-constexpr std::uint32_t kMaxSurfaces = 4;      // off-screen
-constexpr std::size_t kMaxFrames = 1000;       // each is a picture of `run`
+constexpr std::uint32_t kMaxStride = 1024;  // bytes: 16 attributes of 16 bytes, and room
+constexpr std::uint32_t kMaxSurfaces = 4;   // off-screen
+constexpr std::size_t kMaxFrames = 1000;    // each is a picture of `run`
 
 struct Loaded {
   isa::ShaderKind kind;
@@ -31,8 +30,8 @@ class Checker {
 
   void check() {
     where_ = "frame";
-    in_range("width", trace_.width, 1, kMaxFrameEdge);
-    in_range("height", trace_.height, 1, kMaxFrameEdge);
+    in_range("width", trace_.width, 1, kMostFrameEdge);
+    in_range("height", trace_.height, 1, kMostFrameEdge);
     in_range("number of off-screen surfaces", trace_.surfaces, 0, kMaxSurfaces);
     for (std::size_t i = 0; i < trace_.buffers.size(); ++i) {
       where_ = fmt::format("buffer {}", i);

@@ -120,8 +120,7 @@ class CapturedViews {
     if (!(window.x >= 0 && window.x < view.width && window.y >= 0 && window.y < view.height)) return 0;
     const std::size_t pixel =
         static_cast<std::size_t>(window.y) * frame.width + static_cast<std::size_t>(window.x);
-    const double depth =
-        view.far_plane / (view.far_plane - view.near_plane) * (1 - view.near_plane / camera.z);
+    const double depth = view.depth_scale() * (1 - view.near_plane / camera.z);
     return depth <= frame.depth_value(pixel) ? frame.color(pixel)[3] : 0;
   }
 

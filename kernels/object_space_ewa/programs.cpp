@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "kernels/vec4.h"
 #include "model/embedded_file.h"
 #include "model/error.h"
 
@@ -15,10 +16,6 @@ std::span<const EmbeddedFile> embedded_programs();  // written by the build: ../
 
 namespace splatscope::kernels {
 namespace {
-
-Vec4 vec4(double x, double y, double z, double w) {
-  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
-}
 
 // Relative and absolute floor of D^2 in splat_ewa.vs. Together they keep the entries of J^-1 J^-T under
 // 1/(2 * 1e-11 * sqrt(1e-16)) = 5e18, whose square is still a float; at cos = 1e-3 they add 1e-5 of D^2.

@@ -43,13 +43,12 @@ struct LayeredPicture {
 
 // Each surfel's screen-space filter of Eq. 35 with its conic by two additions a pixel, and 1/z of its tangent
 // plane, which is linear on the screen, by one; the low-pass filter reaches beyond the surfel, z does not:
-// planes seen edge-on would scatter. A contribution belongs to the layer whose z, that of the
-// contribution which founded it, is nearest to its own, if it is closer than `same_surface`; else it founds a
-// layer. A layer's colour and opacity are means by weight; its coverage is the summed weight over
-// `whole_weight`, at most 1, which antialiases edges; layers are blended front to back, those joined that one
-// surface has left. `opacities`: of each
-// surfel, 0 to 1; empty: all 1. Several threads, the same bits for any number of them. Contributions count
-// between the near and the far plane.
+// planes seen edge-on would scatter. A contribution belongs to the layer whose z, that of the contribution
+// which founded it, is nearest to its own, if it is closer than `same_surface`; else it founds a layer. A
+// layer's colour and opacity are means by weight; its coverage is the summed weight over `whole_weight`, at
+// most 1, which antialiases edges; layers are blended front to back, those joined that one surface has left.
+// `opacities`: of each surfel, 0 to 1; empty: all 1. Several threads, the same bits for any number of them.
+// Contributions count between the near and the far plane.
 LayeredPicture layered_splatting(const View& view, std::span<const Surfel> surfels,
                                  std::span<const double> opacities, const LayeredSettings& settings);
 

@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "kernels/vec4.h"
+
 namespace splatscope::kernels {
 namespace {
 
@@ -14,10 +16,6 @@ constexpr double kDepthFloor = 1e-5;
 // shows.
 constexpr double kSmallestPivot = 1e-6;
 
-Vec4 vec4(const glm::dvec4& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(v.w)};
-}
-
 }  // namespace
 
 std::vector<Vec4> plane_constants(const View& view, double cutoff, double) {
@@ -26,7 +24,7 @@ std::vector<Vec4> plane_constants(const View& view, double cutoff, double) {
   const glm::dmat4 rows = glm::transpose(view.object_to_camera) / scale;
   const glm::dvec4 eye = glm::inverse(view.object_to_camera) * glm::dvec4(0, 0, 0, 1);
   const double near = view.near_plane / scale;
-  const double depth = view.far_plane / (view.far_plane - view.near_plane);
+  const double depth = view.depth_scale();
   const double radius = std::sqrt(2.0 * cutoff);
   const double eta_squared = view.eta * view.eta;
   return {vec4(view.eta * rows[0]),

@@ -6,19 +6,13 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
+#include "kernels/vec4.h"
+
 namespace splatscope::kernels {
-namespace {
-
-Vec4 vec4(double x, double y, double z, double w) {
-  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
-}
-
-}  // namespace
-
 std::vector<Vec4> voxel_constants(const View& view, const glm::dmat4& to_object, const glm::dmat3* variance,
                                   double cutoff, double unit) {
   const double eta = view.eta, near = view.near_plane;
-  const double depth = view.far_plane / (view.far_plane - near);
+  const double depth = view.depth_scale();
   const glm::dmat4 rows = glm::transpose(view.object_to_camera * to_object);
   const auto row = [&](int i, double scale) {
     return vec4(scale * rows[i].x, scale * rows[i].y, scale * rows[i].z, scale * rows[i].w);

@@ -108,7 +108,10 @@ struct Present {};
 
 using Command = std::variant<Clear, Draw, NormalizeOnHost, Present>;
 
-// Frames of `width` x `height` pixels, at most 4096 each.
+// Pixels; ours: more than the machines of 2002 can show.
+inline constexpr int kMostFrameEdge = 4096;
+
+// Frames of `width` x `height` pixels, at most kMostFrameEdge each.
 struct Trace {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

@@ -57,8 +57,7 @@ std::vector<Parameter> number_parameters() {
        "fraction of window x and y on which coverage is decided"},
       {"numbers.filter_bits", "bits", integer<&M::numbers, &NumberFormats::filter_bits>(0, 8),
        "weights of bilinear texture filtering, 0: the nearest texel; in the picture alone: timing counts "
-       "that "
-       "texel's block"},
+       "that texel's block"},
       {"numbers.reciprocal_bits", "bits", integer<&M::numbers, &NumberFormats::reciprocal_bits>(8, 24),
        "significant bits that the results of RCP and RSQ are rounded to; 24: all"},
       {"clock.core_megahertz", "MHz", real<&M::clock, &M::Clock::core_megahertz>(1, 10000),

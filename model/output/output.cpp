@@ -72,6 +72,9 @@ void pack_and_write(const std::array<const float*, 4>& colors, std::span<const s
 
 }  // namespace
 
+// Factors that need no destination come before those that do.
+static_assert(BlendFactor::inv_src_alpha < BlendFactor::dst_alpha);
+
 bool packs(const DrawState& state, const NumberFormats& formats) {
   const bool adds =
       state.destination_factor == BlendFactor::one && state.source_factor <= BlendFactor::inv_src_alpha;

@@ -39,9 +39,9 @@ struct WindowVertex {
   std::array<Vec4, kAttributes> attributes{};
 };
 
-// Window coordinates stay within +-kGuardBand pixels; beyond it a triangle is clipped, inside it the scissor
-// of the rasteriser is enough, as on the hardware of 2002 (the width of its guard band is not published: this
-// one is ours).
+// Pixels each way: beyond it a triangle is clipped, inside it the scissor of the rasteriser is enough, as on
+// the hardware of 2002 (the width of its guard band is not published: this one is ours). Rounding can put
+// what was clipped further out, but never beyond twice of it.
 inline constexpr double kGuardBand = 32768.0;
 
 // Vertices of one triangle list after the vertex program: structure of arrays.

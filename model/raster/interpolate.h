@@ -30,9 +30,9 @@ struct FragmentsOfPiece {
   std::size_t first, end;
 };
 
-// Appends the places x + 65536 y in the frame (at most 4096 a side) of a window's pixels that passed, quad by
-// quad, behind the first `count` of `places`. What lies behind them is overwritten. Returns how many there
-// are then, at most kFragments.
+// Appends the places x + 65536 y in the frame (at most kMostFrameEdge a side) of a window's pixels that
+// passed, quad by quad, behind the first `count` of `places`. What lies behind them is overwritten. Returns
+// how many there are then, at most kFragments.
 std::size_t append_places(const Window& window, std::size_t count,
                           std::span<std::uint32_t, kFragmentStride> places);
 

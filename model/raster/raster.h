@@ -52,16 +52,16 @@ struct Corners {
   alignas(64) double x[3][kCapacity], y[3][kCapacity], z[3][kCapacity], inverse_w[3][kCapacity];
 
   void set(std::size_t triangle, std::size_t corner, double window_x, double window_y, double window_z,
-           double w) {
+           double one_over_w) {
     x[corner][triangle] = window_x;
     y[corner][triangle] = window_y;
     z[corner][triangle] = window_z;
-    inverse_w[corner][triangle] = w;
+    inverse_w[corner][triangle] = one_over_w;
   }
 };
 
 // Sets up the first out.size() triangles (at most Corners::kCapacity). `rounding` (pixels) is added to x and
-// y before they are truncated to the grid. Coordinates lie within the guard band. Not `interpolates`: only
+// y before they are truncated to the grid. Coordinates lie within 2 kGuardBand. Not `interpolates`: only
 // the depth is wanted, the other planes stay as they are.
 void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
             bool interpolates, std::span<TriangleSetup> out);
@@ -111,7 +111,7 @@ struct BandCounts {
 
 // The windows of a triangle with covered pixels in one band of 8 rows, written to `out`; tests (and writes)
 // the depth of these pixels. `y`: of the band, even.
-inline constexpr std::size_t kMaxWindows = 4096 / kWindow + 1;
+inline constexpr std::size_t kMaxWindows = kMostFrameEdge / kWindow + 1;
 BandCounts rasterize_band(const TriangleSetup& setup, const DepthTarget& depth, int y,
                           std::span<Window, kMaxWindows> out);
 

@@ -41,7 +41,7 @@ HWY_INLINE void store_integers(V value, std::int32_t* to) {
 }
 
 struct Grid {
-  Grid(int subpixel_bits)  // twice as fine, so that pixel centres lie on it for 0 subpixel bits too
+  explicit Grid(int subpixel_bits)  // twice as fine, so that pixel centres lie on it for 0 subpixel bits too
       : steps(set(1 << subpixel_bits)),
         pixel(set(2 << subpixel_bits)),
         inverse(set(1.0 / (2 << subpixel_bits))) {}

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "model/testing/error_of.h"
@@ -31,7 +32,10 @@ class ScratchFolder {
     if (!::mkdtemp(name.data())) throw std::runtime_error("no scratch folder");
     path_ = name;
   }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  ~ScratchFolder() {
+    std::error_code error;  // a failure to tidy up must not hide what failed before
+    std::filesystem::remove_all(path_, error);
+  }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 

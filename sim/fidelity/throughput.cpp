@@ -142,8 +142,10 @@ class ThroughputEstimate::State {
     add_unit(result, "raster", busy_[kRaster]);
     if (needs_.depth) add_unit(result, "depth", busy_[kDepth]);
     if (needs_.texture) add_unit(result, "texture", busy_[kTexture]);
-    if (needs_.color) add_unit(result, "pixel", busy_[kPixel]);
-    if (needs_.color) add_unit(result, "blend", busy_[kBlend]);
+    if (needs_.color) {
+      add_unit(result, "pixel", busy_[kPixel]);
+      add_unit(result, "blend", busy_[kBlend]);
+    }
     for (int i = 0; i < machine_.memory.channels; ++i)
       add_unit(result, "memory" + std::to_string(i), busy_[kMemory]);
     add_unit(result, "command", busy_[kCommand]);

@@ -49,6 +49,7 @@ class ClockDomain {
   void run(Cycle last);
   void lower_limit(Femtoseconds time);  // run() stops after the last cycle at or before `time`
 
+  // `at` is later than the last visited cycle; before the first visit, any cycle.
   void wake(int place, Cycle at) {
     if (at - now_ <= kWheel) {
       wheel_[at % kWheel] |= std::uint64_t{1} << place;

@@ -92,9 +92,8 @@ void add_to(Findings& findings, const std::vector<Table1Row>& table) {
       rows);
   report.paragraph(
       "PSNR is against the double-precision sums of Eq. 8 by the exact map (perspective), normalised per "
-      "pixel, over the pixels that the "
-      "plane covers. The paper gives neither the camera nor the size of the squares: both are a "
-      "reconstruction, as are the programs, of which it prints no listing.");
+      "pixel, over the pixels that the plane covers. The paper gives neither the camera nor the size of the "
+      "squares: both are a reconstruction, as are the programs, of which it prints no listing.");
   for (const Table1Row& row : table) {
     if (row.algorithm != "ewa-per-surfel") continue;
     report.heading(fmt::format("Inside the {}: {}", row.machine, row.algorithm));

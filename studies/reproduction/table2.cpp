@@ -70,10 +70,8 @@ void add_to(Findings& findings, const std::vector<Table2Row>& table) {
   findings.report().paragraph(
       "The paper's models and cameras were never published. The models here are stand-ins, made after their "
       "names, with exactly as many points; the camera frames each of them. A frame's time goes with the "
-      "points "
-      "that culling leaves, and these depend on the shape and on the view: part of each error is the "
-      "stand-in's, "
-      "not the machine's.");
+      "points that culling leaves, and these depend on the shape and on the view: part of each error is the "
+      "stand-in's, not the machine's.");
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace splatscope::studies {
 namespace {
 
 constexpr int kFrame = 512;
-constexpr std::string_view kMachines[] = {"radeon-8500", "geforce4-ti4400"};
+constexpr std::string_view kGeForce = "geforce4-ti4400", kMachines[] = {"radeon-8500", kGeForce};
 constexpr FrameFormat kFormats[] = {FrameFormat::unorm8, FrameFormat::unorm10, FrameFormat::half,
                                     FrameFormat::unorm16, FrameFormat::float32};
 
@@ -222,7 +222,7 @@ std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity, 
 
 std::vector<StepRow> step_rows(const VolumeModel& model, const Progress& progress) {
   const Reference reference(model);
-  const Machine machine = machine::load(kMachines[1]);
+  const Machine machine = machine::load(kGeForce);
   RenderOptions options;
   options.record = Record::nothing;
   const std::array<Trace, 2> traces{traces::volume_trace(model.view, model.splats, {.gains = false}).trace,
@@ -268,8 +268,7 @@ void reproduce_zwicker_figure16(Findings& findings, const Progress& progress) {
     findings.pictures(
         {{"zwicker-fig16-" + row.name + "-software", row.stand_in + ": software", row.software},
          {"zwicker-fig16-" + row.name + "-machine",
-          fmt::format("{}: {} in 8 bits, {:.1f} dB", row.stand_in, kMachines[1], row.psnr_8_bits),
-          row.machine}});
+          fmt::format("{}: {} in 8 bits, {:.1f} dB", row.stand_in, kGeForce, row.psnr_8_bits), row.machine}});
   }
   add_table(findings.report(), rows);
   findings.result("zwicker_fig16", list);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <queue>
 
 #include "model/stop.h"
@@ -27,13 +28,9 @@ std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-glm::dvec3 squared(const glm::dvec3& v) {
-  return v * v;
-}
-
 double distance2(const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 d = squared(a - b);
-  return d.x + d.y + d.z;
+  const glm::dvec3 d = a - b;
+  return glm::dot(d, d);
 }
 
 // Projection onto the surface inside the cell. A triangle goes on beyond its cell, and the closest point may

@@ -35,8 +35,7 @@ std::span<const SceneKey> volume_keys() {
        PlacesValue{[](S& s) -> std::vector<double>& { return s.volume.z; }, -kFarthest, kFarthest}},
       {"volume", "positions", "",
        "curvilinear grid: where its voxels stand (NRRD, raw encoding, 4 dimensions, the first of them x y "
-       "z), "
-       "relative to the scene file",
+       "z), relative to the scene file",
        TextValue{[](S& s) -> std::string& { return s.volume.positions; }, ""}},
       {"volume", "samples", "", "irregular data in the place of a grid (PLY), relative to the scene file",
        TextValue{[](S& s) -> std::string& { return s.volume.samples; }, ""}},
