@@ -41,7 +41,7 @@ HWY_INLINE V3 scaled(const V3& a, V s) {
 struct Lanes {
   enum Component { x, y, z, nx, ny, nz, red, green, blue, weight, flatness, kComponents };
   HWY_ALIGN float values[kComponents][kLanes];
-  HWY_ALIGN float variance[6][kLanes];
+  HWY_ALIGN float variance[12][kLanes];
 
   HWY_INLINE void load(std::size_t lane, const VolumeSplat& splat) {
     for (int i = 0; i < 3; ++i) {
@@ -72,15 +72,14 @@ struct Symmetric2 {
 // The upper 2x2 of J C J^T for rows a and b of J, of C flattened along n by k (Eq. 31, 37):
 // C - k (n (C n)^T + (C n) n^T) + k^2 (n C n) n n^T. Its determinant is w^T adj(C) w (Cauchy and Binet) of
 // w = adj(1 - k n n^T) (a x b).
-HWY_INLINE Symmetric2 projected(const V (&c)[6], const V3& a, const V3& b, const V3& n, V k) {
-  const V3 first{c[0], c[1], c[2]}, second{c[1], c[3], c[4]}, third{c[2], c[4], c[5]};
-  const auto times = [&](const V3& v) HWY_ATTR { return V3{dot(first, v), dot(second, v), dot(third, v)}; };
-  const auto determinant = [&](const V3& w) HWY_ATTR {
-    return hn::Add(
-        hn::Add(hn::Mul(w.x, dot(cross(second, third), w)), hn::Mul(w.y, dot(cross(third, first), w))),
-        hn::Mul(w.z, dot(cross(first, second), w)));
+HWY_INLINE Symmetric2 projected(const V (&c)[12], const V3& a, const V3& b, const V3& n, V k) {
+  // Of `c` from `at` on.
+  const auto times = [&](std::size_t at, const V3& v) HWY_ATTR {
+    return V3{dot({c[at], c[at + 1], c[at + 2]}, v), dot({c[at + 1], c[at + 3], c[at + 4]}, v),
+              dot({c[at + 2], c[at + 4], c[at + 5]}, v)};
   };
-  const V3 ca = times(a), cb = times(b), w = cross(a, b);
+  const auto determinant = [&](const V3& w) HWY_ATTR { return dot(times(6, w), w); };
+  const V3 ca = times(0, a), cb = times(0, b), w = cross(a, b);
   const Symmetric2 v{dot(a, ca), dot(a, cb), dot(b, cb), determinant(w)};
   if (hn::AllTrue(F{}, hn::Eq(k, hn::Zero(F{})))) return v;
   const V left = hn::Sub(set(1.0f), k), along = hn::Mul(k, dot(n, w));
@@ -88,7 +87,7 @@ HWY_INLINE Symmetric2 projected(const V (&c)[6], const V3& a, const V3& b, const
                 hn::Add(hn::Mul(left, w.y), hn::Mul(along, n.y)),
                 hn::Add(hn::Mul(left, w.z), hn::Mul(along, n.z))};
   const V na = hn::Mul(k, dot(n, a)), nb = hn::Mul(k, dot(n, b));
-  const V ca_n = dot(n, ca), cb_n = dot(n, cb), ncn = dot(n, times(n));
+  const V ca_n = dot(n, ca), cb_n = dot(n, cb), ncn = dot(n, times(0, n));
   const auto entry = [&](V initial, V p, V q, V cp, V cq) HWY_ATTR {
     return hn::Add(hn::Sub(initial, hn::Add(hn::Mul(p, cq), hn::Mul(q, cp))), hn::Mul(ncn, hn::Mul(p, q)));
   };
@@ -152,9 +151,9 @@ HWY_INLINE Symmetric2 variance(const FastVolumeView& view, const Lanes& lanes, V
   }
   const V3 a{scale, zero, hn::Neg(hn::Mul(scale, slope_x))};
   const V3 b{zero, hn::Neg(scale), hn::Neg(hn::Mul(scale, slope_y))};
-  V c[6];
+  V c[12];
   const bool own = view.kernels == FastKernels::own;
-  for (std::size_t i = 0; i < 6; ++i) c[i] = own ? hn::Load(F{}, lanes.variance[i]) : set(view.variance[i]);
+  for (std::size_t i = 0; i < 12; ++i) c[i] = own ? hn::Load(F{}, lanes.variance[i]) : set(view.variance[i]);
   if (!own) return projected(c, a, b, normal, lanes[Lanes::flatness]);
   return projected(c, turned_back(view, a), turned_back(view, b), lanes.triple(Lanes::nx),
                    lanes[Lanes::flatness]);
@@ -234,7 +233,7 @@ std::size_t project(const FastVolumeView& view, const SpecularTable& table,
       const VolumeSplat& splat = splats[numbers[i + lane]];
       lanes.load(lane, splat);
       if (view.kernels != FastKernels::own) continue;
-      for (std::size_t e = 0; e < 6; ++e) lanes.variance[e][lane] = kernels[splat.kernel][e];
+      for (std::size_t e = 0; e < 12; ++e) lanes.variance[e][lane] = kernels[splat.kernel][e];
     }
     project_batch(view, table, lanes, batch);
     for (std::size_t lane = 0; lane < filled; ++lane) {

@@ -13,8 +13,9 @@
 // The inside of fast_volume: its data, and what is done to them on SIMD registers.
 namespace splatscope::kernels {
 
-// xx, xy, xz, yy, yz, zz of a variance matrix.
-using FastVariance = std::array<float, 6>;
+// xx, xy, xz, yy, yz, zz of a variance matrix, and of its adjugate: in single precision that would lose the
+// least variance of a long kernel.
+using FastVariance = std::array<float, 12>;
 
 enum class FastKernels : std::uint8_t {
   spherical,  // sigma^2 I, none of them flat

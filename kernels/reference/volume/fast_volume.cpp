@@ -1,7 +1,9 @@
 #include "kernels/reference/volume/fast_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
 #include <utility>
@@ -12,9 +14,20 @@
 namespace splatscope::kernels {
 namespace {
 
-FastVariance fast_variance(const glm::dmat3& v) {
-  return {static_cast<float>(v[0][0]), static_cast<float>(v[1][0]), static_cast<float>(v[2][0]),
-          static_cast<float>(v[1][1]), static_cast<float>(v[2][1]), static_cast<float>(v[2][2])};
+// `adjugate`: of v.
+FastVariance fast_variance(const glm::dmat3& v, const glm::dmat3& adjugate) {
+  FastVariance fast;
+  std::size_t i = 0;
+  for (const glm::dmat3* m : {&v, &adjugate}) {
+    for (int row = 0; row < 3; ++row)
+      for (int column = row; column < 3; ++column) fast[i++] = static_cast<float>((*m)[column][row]);
+  }
+  return fast;
+}
+
+glm::dmat3 adjugate(const glm::dmat3& symmetric) {
+  const auto& [x, y, z] = std::array{symmetric[0], symmetric[1], symmetric[2]};
+  return {glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
 }
 
 bool is_spherical(const glm::dmat3& v) {
@@ -36,7 +49,11 @@ FastVolumeView fast_view(const View& view, const VolumeSettings& settings, const
   fast.diffuse = static_cast<float>(settings.light.diffuse);
   fast.kernels = FastKernels::own;
   if (splats.kernels.size() == 1) {
-    fast.variance = fast_variance(camera_variance(view, splats.kernels[0]));
+    // adj(W V W^T) by the adjugates of both: those of V alone are exact where the grid's axes are its own.
+    const glm::dmat3 w(view.object_to_camera);
+    const glm::dmat3 cofactors(glm::cross(w[1], w[2]), glm::cross(w[2], w[0]), glm::cross(w[0], w[1]));
+    fast.variance = fast_variance(camera_variance(view, splats.kernels[0]),
+                                  cofactors * adjugate(splats.kernels[0]) * glm::transpose(cofactors));
     const bool spherical = is_spherical(splats.kernels[0]) && !flat && fast.perspective;
     fast.kernels = spherical ? FastKernels::spherical : FastKernels::shared;
   }
@@ -91,7 +108,8 @@ FastVolume::FastVolume(VolumeSplats splats) : splats_(std::move(splats)) {
   flat_ = std::ranges::any_of(splats_.splats, [](const VolumeSplat& splat) { return splat.flatness > 0; });
   if (splats_.kernels.size() == 1) return;
   kernels_.reserve(splats_.kernels.size());
-  for (const glm::dmat3& kernel : splats_.kernels) kernels_.push_back(fast_variance(kernel));
+  for (const glm::dmat3& kernel : splats_.kernels)
+    kernels_.push_back(fast_variance(kernel, adjugate(kernel)));
 }
 
 FastVolumePicture FastVolume::draw(const View& view, const VolumeSettings& settings,

@@ -37,7 +37,7 @@ class FastVolume {
  private:
   VolumeSplats splats_;
   bool flat_ = false;  // one of the splats is
-  std::vector<std::array<float, 6>> kernels_;
+  std::vector<std::array<float, 12>> kernels_;
   std::array<SheetOrder, kSheetAxes> orders_;
 };
 
