@@ -287,6 +287,33 @@ TEST(Recorder, DrawsAModelByEveryProgram) {
   }
 }
 
+// Their depth has a part that grows with the near plane's distance: it must not reach z_t.
+TEST(Recorder, DrawsFromAfarByEveryProgram) {
+  Scene scene = parse_scene(
+      "[surfels]\ncolumns = 64\nrows = 64\n[camera]\neye = [0, 700, 1980]\ntarget = [0, 0, 0]\n"
+      "fov_y_degrees = 2\nnear = 1500\nfar = 3000\n[frame]\nwidth = 64\nheight = 64\n"
+      "[splatting]\nalgorithm = \"ewa-per-pixel\"\n",
+      "far.toml");
+  const splatscope::Frame paper = frames_of(record(scene, NumberFormats{}).trace).back();
+  for (const std::string_view program : {"normal", "plane", "facing"}) {
+    scene.splatting.ewa_program = program;
+    EXPECT_GT(psnr(frames_of(record(scene, NumberFormats{}).trace).back(), paper), 40) << program;
+  }
+}
+
+// A surfel is too large by its pixels, not by what the near plane would make of it.
+TEST(Recorder, ANearPlaneNextToTheEyeMakesNoSurfelSmaller) {
+  Scene scene = parse_scene(
+      "[surfels]\ncolumns = 32\nrows = 32\n[camera]\neye = [0, 100, 100]\ntarget = [0, 0, 0]\n"
+      "fov_y_degrees = 2\nfar = 1000\nnear = 10\n[frame]\nwidth = 64\nheight = 64\n"
+      "[splatting]\nalgorithm = \"ewa-per-pixel\"\n",
+      "near.toml");
+  const NumberFormats formats{.depth = DepthFormat::float32};
+  const splatscope::Frame usual = frames_of(record(scene, formats).trace).back();
+  scene.camera.near = 1e-6;
+  EXPECT_GT(psnr(frames_of(record(scene, formats).trace).back(), usual), 40);
+}
+
 TEST(Recorder, HostileSurfelsLeaveNoNaN) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
   Scene scene = small_plane(Algorithm::ewa_per_pixel);

@@ -9,9 +9,9 @@
 namespace splatscope::kernels {
 namespace {
 
-// Of near^2, added to z^2: a surfel at the eye keeps a finite 1/z, and one at the near plane loses 5e-6 of
-// it.
-constexpr double kDepthFloor = 1e-5;
+// Of near^2, added to z^2: a surfel at the eye keeps a finite 1/z, and one at the near plane loses 5e-10 of
+// it, which is far less than a float holds: what is lost would move its depth, by as many near^2.
+constexpr double kDepthFloor = 1e-9;
 // Of the second pivot of W, (z/r)^2 or more but for rounding: r is a thousand times z before this floor
 // shows.
 constexpr double kSmallestPivot = 1e-6;
