@@ -167,6 +167,7 @@ std::vector<std::string> in_processes(std::size_t count, std::size_t processes,
       open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));
     }
   }
+  stop_if_asked();
   if (answered != count) throw std::runtime_error("a process ended early");
   return answers;
 }

@@ -78,8 +78,11 @@ class OpenImageIo : public Codec {
         !out->write_image(OIIO::TypeDesc::FLOAT, picture.values,
                           static_cast<OIIO::stride_t>(picture.pixel_stride * sizeof(float)), OIIO::AutoStride,
                           OIIO::AutoStride, progress, static_cast<void*>(&asked_to_stop)) ||
-        !out->close())
-      throw std::runtime_error("a picture could not be made: " + (out ? out->geterror() : OIIO::geterror()));
+        !out->close()) {
+      const std::string why = out ? out->geterror() : OIIO::geterror();
+      throw std::runtime_error("a picture could not be made: " +
+                               (why.empty() ? "OpenImageIO tells no reason" : why));
+    }
     if (asked_to_stop()) return {};  // it calls a picture written that it was told to give up
     const auto all = std::as_bytes(std::span(bytes));
     return {all.begin(), all.end()};

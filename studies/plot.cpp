@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "model/shell_word.h"
+#include "model/stop.h"
 
 namespace splatscope::studies {
 namespace {
@@ -32,7 +33,7 @@ class ScriptFolder {
  public:
   ScriptFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "splatscope-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for gnuplot's script");
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + " cannot be made for gnuplot's script");
     path_ = name;
   }
   ~ScriptFolder() {
@@ -104,7 +105,9 @@ std::string svg_of(const Plot& plot) {
   std::string text;
   char part[4096];
   for (std::size_t n = 0; (n = std::fread(part, 1, sizeof part, pipe)) > 0;) text.append(part, n);
-  if (::pclose(pipe) != 0) {
+  const int status = ::pclose(pipe);
+  stop_if_asked();
+  if (status != 0) {
     std::ifstream said(errors);
     const std::string why{std::istreambuf_iterator<char>(said), {}};
     throw std::runtime_error(fmt::format("gnuplot failed ({}), expected the package gnuplot-nox", why));

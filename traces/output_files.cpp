@@ -78,7 +78,7 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
                     "is standard input, output or error of this run, expected a file of its own");
   if (fs::is_symlink(path_, error)) {  // the link stays
     const fs::path place = fs::weakly_canonical(path_, error);
-    if (error)
+    if (error || fs::is_symlink(place, error))
       throw UserError(path_.string(), 0, "is a link that leads nowhere, expected a place for a file");
     path_ = place;
   }
@@ -117,7 +117,10 @@ void write_file(const fs::path& path, std::string_view text) {
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;
   refuse_dash(path_);
-  for (fs::path folder = path_; !folder.empty() && !fs::exists(folder, error); folder = folder.parent_path())
+  const auto is_free = [&](const fs::path& folder) {  // not even a link that leads nowhere stands there
+    return fs::symlink_status(folder, error).type() == fs::file_type::not_found;
+  };
+  for (fs::path folder = path_; !folder.empty() && is_free(folder); folder = folder.parent_path())
     made_.push_back(folder);
   fs::create_directories(path_, error);
   try {

@@ -84,6 +84,12 @@ TEST(BadInputs, OutputWhereTheFileSystemRefusesTheName) {
   };
   for (const char* name : {"there/results.json", "there/t.trace", "there/s.ply", "there/plain.bin"})
     loop(name);
+  loop("self");
+  std::filesystem::create_symlink("nowhere/gone", inputs.path() / "lost");
+  for (const char* link : {"self", "lost"}) {
+    for (const auto& arguments : writers(link)) inputs.refused(link, arguments);
+    inputs.refused(link, {"record", "tiny.toml", "-o", link});
+  }
   inputs.refused("a link to itself", {"run", "tiny.toml", "--out", "there"});
   inputs.refused("a link to itself", {"reproduce", "fig8", "--out", "there"});
   inputs.refused("a link to itself", {"record", "tiny.toml", "-o", "there/t.trace"});
