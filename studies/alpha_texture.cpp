@@ -135,19 +135,14 @@ TextureRow describe_texture(double cutoff, int length) {
 }
 
 int least_length(double cutoff) {
-  // The row through the middle is the steepest.
   const auto leaves_out = [&](int length) {
-    const double radius = std::sqrt(2 * cutoff);
-    const auto texel = [&](int i) {
-      const double y = radius * ((2.0 * i + 1) / length - 1);
-      return int{kernels::alpha_texel(cutoff, kernels::CutoffShape::square, y * y)};
-    };
-    for (int i = 1; i < length; ++i) {
-      if (std::abs(texel(i) - texel(i - 1)) > 1) return true;
-    }
+    const Texture texture = kernels::alpha_texture(cutoff, length, kernels::CutoffShape::square);
+    const auto n = static_cast<std::size_t>(length);
+    for (std::size_t i = 1; i < n * n; ++i)
+      if (i % n != 0 && std::abs(texture.texels[i] - texture.texels[i - 1]) > 1) return true;
     return false;
   };
-  int length = 2 * kernels::optimal_length(cutoff);
+  int length = kernels::optimal_length(cutoff);  // leaves none out: Eq. 16
   while (length > 2 && !leaves_out(length - 1)) --length;
   return length;
 }
