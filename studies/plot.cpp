@@ -33,7 +33,8 @@ class ScriptFolder {
  public:
   ScriptFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "splatscope-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + " cannot be made for gnuplot's script");
+    if (::mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error(name + " cannot be made for gnuplot's script");
     path_ = name;
   }
   ~ScriptFolder() {

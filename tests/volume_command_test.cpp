@@ -73,7 +73,8 @@ TEST(VolumeCommand, SaysWhereNothingIsDrawnAndWhy) {
                 .find(start + "each is before the near plane, outside of the picture, or without "
                               "a finite footprint\n"),
             std::string::npos);
-  EXPECT_NE(said("clear.toml").find(start + "no voxel has any opacity, or a cell of any size\n"), std::string::npos);
+  EXPECT_NE(said("clear.toml").find(start + "no voxel has any opacity, or a cell of any size\n"),
+            std::string::npos);
   EXPECT_EQ(said("seen.toml").find("warning"), std::string::npos);
 }
 
