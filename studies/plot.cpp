@@ -1,7 +1,6 @@
 #include "studies/plot.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <cmath>
 #include <cstdio>
@@ -10,10 +9,10 @@
 #include <iterator>
 #include <numbers>
 #include <stdexcept>
-#include <system_error>
 
 #include "model/shell_word.h"
 #include "model/stop.h"
+#include "model/temporary_folder.h"
 
 namespace splatscope::studies {
 namespace {
@@ -27,28 +26,6 @@ std::string quoted(const std::string& text) {
   }
   return result + "'";
 }
-
-// Of this plot alone: others, and who else has the machine, have theirs.
-class ScriptFolder {
- public:
-  ScriptFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "splatscope-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error(name + " cannot be made for gnuplot's script");
-    path_ = name;
-  }
-  ~ScriptFolder() {
-    std::error_code error;  // a failure to tidy up must not hide the failure that led here
-    std::filesystem::remove_all(path_, error);
-  }
-  ScriptFolder(const ScriptFolder&) = delete;
-  ScriptFolder& operator=(const ScriptFolder&) = delete;
-
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string script_of(const Plot& plot) {
   std::string script =
@@ -95,7 +72,7 @@ Plot::Series ellipse(const std::string& name, const glm::dmat2& axes) {
 // What gnuplot says besides, such as warnings of an axis without extent, is no part of the drawing; the
 // user's own settings (-d) are none of it either.
 std::string svg_of(const Plot& plot) {
-  const ScriptFolder folder;
+  const TemporaryFolder folder;  // others, and who else has the machine, have theirs
   const std::filesystem::path script = folder / "script", errors = folder / "errors";
   if (!(std::ofstream(script) << script_of(plot)).flush())
     throw std::runtime_error(script.string() + ": writing failed (is the disk full?)");

@@ -17,10 +17,10 @@ namespace {
 // which covers any frame as well. Fourth powers of it appear in the EWA program, and must be finite floats.
 constexpr double kLargestRadius = 1e9;
 
-float largest_radius(const kernels::View& view, const glm::dvec3& center) {
-  const double scale = glm::length(glm::dvec3(view.object_to_camera[0]));  // of the camera space
+// `camera_scale`: units of the camera space in one of the object space.
+float largest_radius(const kernels::View& view, double camera_scale, const glm::dvec3& center) {
   const double z = std::max(view.near_plane, view.camera_space(center).z);
-  return static_cast<float>(kLargestRadius * z / (view.eta * scale));
+  return static_cast<float>(kLargestRadius * z / (view.eta * camera_scale));
 }
 
 // Which corner of the program's quad lies about where each corner of o +- s +- t does, and so is to have its
@@ -55,9 +55,10 @@ Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& f
   const std::size_t bytes = kernels::vertex_bytes(program.fields);
   buffer.bytes.resize(surfels.size() * kQuadVertices * bytes);
   std::byte* out = buffer.bytes.data();
+  const double camera_scale = glm::length(glm::dvec3(view.object_to_camera[0]));
   for (std::size_t k = 0; k < surfels.size(); ++k) {
     Surfel drawn = surfels[k];
-    drawn.radius = std::min(drawn.radius, largest_radius(view, glm::dvec3(drawn.position)));
+    drawn.radius = std::min(drawn.radius, largest_radius(view, camera_scale, glm::dvec3(drawn.position)));
     const Tangents axes = tangents(drawn);
     kernels::Surfel surfel{glm::dvec3(surfels[k].position), axes.s, axes.t, settings.sigma, 0,
                            glm::dvec3(surfels[k].color)};

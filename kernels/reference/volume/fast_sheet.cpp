@@ -41,7 +41,7 @@ HWY_INLINE V3 scaled(const V3& a, V s) {
 struct Lanes {
   enum Component { x, y, z, nx, ny, nz, red, green, blue, weight, flatness, kComponents };
   HWY_ALIGN float values[kComponents][kLanes];
-  HWY_ALIGN float variance[12][kLanes];
+  HWY_ALIGN float variance[kVarianceTerms][kLanes];
 
   HWY_INLINE void load(std::size_t lane, const VolumeSplat& splat) {
     for (int i = 0; i < 3; ++i) {
@@ -72,7 +72,7 @@ struct Symmetric2 {
 // The upper 2x2 of J C J^T for rows a and b of J, of C flattened along n by k (Eq. 31, 37):
 // C - k (n (C n)^T + (C n) n^T) + k^2 (n C n) n n^T. Its determinant is w^T adj(C) w (Cauchy and Binet) of
 // w = adj(1 - k n n^T) (a x b).
-HWY_INLINE Symmetric2 projected(const V (&c)[12], const V3& a, const V3& b, const V3& n, V k) {
+HWY_INLINE Symmetric2 projected(const V (&c)[kVarianceTerms], const V3& a, const V3& b, const V3& n, V k) {
   // Of `c` from `at` on.
   const auto times = [&](std::size_t at, const V3& v) HWY_ATTR {
     return V3{dot({c[at], c[at + 1], c[at + 2]}, v), dot({c[at + 1], c[at + 3], c[at + 4]}, v),
@@ -151,9 +151,10 @@ HWY_INLINE Symmetric2 variance(const FastVolumeView& view, const Lanes& lanes, V
   }
   const V3 a{scale, zero, hn::Neg(hn::Mul(scale, slope_x))};
   const V3 b{zero, hn::Neg(scale), hn::Neg(hn::Mul(scale, slope_y))};
-  V c[12];
+  V c[kVarianceTerms];
   const bool own = view.kernels == FastKernels::own;
-  for (std::size_t i = 0; i < 12; ++i) c[i] = own ? hn::Load(F{}, lanes.variance[i]) : set(view.variance[i]);
+  for (std::size_t i = 0; i < kVarianceTerms; ++i)
+    c[i] = own ? hn::Load(F{}, lanes.variance[i]) : set(view.variance[i]);
   if (!own) return projected(c, a, b, normal, lanes[Lanes::flatness]);
   return projected(c, turned_back(view, a), turned_back(view, b), lanes.triple(Lanes::nx),
                    lanes[Lanes::flatness]);
@@ -233,7 +234,7 @@ std::size_t project(const FastVolumeView& view, const SpecularTable& table,
       const VolumeSplat& splat = splats[numbers[i + lane]];
       lanes.load(lane, splat);
       if (view.kernels != FastKernels::own) continue;
-      for (std::size_t e = 0; e < 12; ++e) lanes.variance[e][lane] = kernels[splat.kernel][e];
+      for (std::size_t e = 0; e < kVarianceTerms; ++e) lanes.variance[e][lane] = kernels[splat.kernel][e];
     }
     project_batch(view, table, lanes, batch);
     for (std::size_t lane = 0; lane < filled; ++lane) {

@@ -15,7 +15,8 @@ namespace splatscope::kernels {
 
 // xx, xy, xz, yy, yz, zz of a variance matrix, and of its adjugate: in single precision that would lose the
 // least variance of a long kernel.
-using FastVariance = std::array<float, 12>;
+inline constexpr std::size_t kVarianceTerms = 12;
+using FastVariance = std::array<float, kVarianceTerms>;
 
 enum class FastKernels : std::uint8_t {
   spherical,  // sigma^2 I, none of them flat

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "kernels/reference/volume/fast_sheet.h"
 #include "kernels/reference/volume/sheet_drawing.h"
 
 namespace splatscope::kernels {

@@ -6,6 +6,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "kernels/reference/volume/fast_sheet.h"
 #include "kernels/reference/volume/volume_rendering.h"
 #include "kernels/reference/volume/volume_splats.h"
 #include "kernels/view.h"
@@ -36,8 +37,8 @@ class FastVolume {
 
  private:
   VolumeSplats splats_;
-  bool flat_ = false;  // one of the splats is
-  std::vector<std::array<float, 12>> kernels_;
+  bool flat_ = false;                  // one of the splats is
+  std::vector<FastVariance> kernels_;  // of FastKernels::own
   std::array<SheetOrder, kSheetAxes> orders_;
 };
 

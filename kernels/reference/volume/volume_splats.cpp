@@ -122,7 +122,8 @@ VolumeSplats sample_splats(std::span<const VolumeSample> samples, const Transfer
     const double value = static_cast<double>(sample.value);
     const VoxelLook look = transfer(value);
     const VolumeSplat splat =
-        classified(sample.position, value, look, sample.gradient, sample.cell, flattening);
+        look.opacity > 0 ? classified(sample.position, value, look, sample.gradient, sample.cell, flattening)
+                         : VolumeSplat{};
     if (!(splat.weight > 0)) {
       ++result.empty;
       continue;
