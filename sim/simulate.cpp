@@ -36,7 +36,7 @@ Result run(SimulatedMachine& machine, const Trace& trace, const std::function<vo
 
   Result result;
   result.cycles = machine.cycles();
-  result.seconds = static_cast<double>(machine.core.time(result.cycles)) * 1e-15;
+  result.seconds = seconds_of(result.cycles, machine.core.time(1));
   for (ClockDomain* domain : domains) {
     domain->finish_observing(result.cycles);
     for (std::size_t place = 0; place < domain->units().size(); ++place) {

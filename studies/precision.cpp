@@ -21,7 +21,8 @@
 namespace splatscope::studies {
 namespace {
 
-constexpr double kFullCutoff = 8;  // exp(-8) is a tenth of 1/255
+constexpr double kFullCutoff = 8;    // exp(-8) is a tenth of 1/255
+constexpr double kFieldOfView = 60;  // degrees
 
 kernels::SplatSums sums_of(traces::Scene scene, double cutoff, bool circular, bool one_surface) {
   scene.splatting.cutoff = cutoff;
@@ -30,7 +31,9 @@ kernels::SplatSums sums_of(traces::Scene scene, double cutoff, bool circular, bo
   return screen_space_reference(scene, kernels::ScreenMap::perspective);
 }
 
-PrecisionScene with_references(std::string name, const traces::Scene& scene, bool one_surface) {
+// Colours as vertices hold them: their 8 bits are none of the steps.
+PrecisionScene with_references(std::string name, traces::Scene scene, bool one_surface) {
+  for (traces::Surfel& surfel : scene.surfels) surfel.color = glm::round(surfel.color * 255.0f) / 255.0f;
   const double cutoff = scene.splatting.cutoff;
   return {std::move(name), scene, sums_of(scene, cutoff, true, one_surface),
           sums_of(scene, kFullCutoff, true, one_surface)};
@@ -41,6 +44,38 @@ Frame draw_with_weight(traces::Scene scene, double weight, const NumberFormats& 
   const traces::CapturedWeights weights = traces::uniform_weights(scene.surfels.size(), weight);
   scene.splatting.algorithm = traces::Algorithm::ewa_per_surfel;
   return render(traces::record(scene, weights).trace, {.formats = numbers, .record = Record::nothing}).frame;
+}
+
+// A plane in a grid of spacing 1, seen from so far away.
+traces::Scene tilted_plane(double tilt_degrees, int surfels_a_side, double distance, int frame_size) {
+  const double tilt = tilt_degrees * std::numbers::pi / 180;
+  return traces::parse_scene(
+      fmt::format(
+          "[surfels]\ngenerator = \"plane\"\ncolumns = {0}\nrows = {0}\nchecker_light = [0.9, 0.8, 0.7]\n"
+          "checker_dark = [0.1, 0.15, 0.2]\n"
+          "[frame]\nwidth = {1}\nheight = {1}\n"
+          "[camera]\neye = [0, {2}, {3}]\ntarget = [0, 0, 0]\nup = [0, {3}, -{2}]\nfov_y_degrees = {5}\n"
+          "near = 1\nfar = {4}\n",
+          surfels_a_side, frame_size, distance * std::cos(tilt), distance * std::sin(tilt), 4 * distance,
+          kFieldOfView),
+      "precision-plane");
+}
+
+// White splats, so many on each pixel on average, seen from above and beyond every edge of the frame.
+traces::Scene overlapping_splats(double count, int frame_size) {
+  // A spacing. With a whole number every splat's edge would fall on the same places of its pixels.
+  constexpr double kPixels = 6.854;
+  const double half_view = 0.5 * frame_size / kPixels;
+  const double distance = half_view / std::tan(0.5 * kFieldOfView * std::numbers::pi / 180);
+  // At the cutoff 1 a splat is a circle, and r^2 = 2 (h^2 + the prefilter's 1 pixel^2).
+  const double radius2 = count / std::numbers::pi;
+  const double half_plane = half_view + std::sqrt(radius2) + 1;
+  traces::Scene scene = tilted_plane(0, static_cast<int>(2 * half_plane) + 1, distance, frame_size);
+  for (traces::Surfel& surfel : scene.surfels) {
+    surfel.radius = static_cast<float>(std::sqrt(0.5 * radius2 - 1 / (kPixels * kPixels)));
+    surfel.color = {1, 1, 1};
+  }
+  return scene;
 }
 
 // The plane at 45 degrees, green, with waves that it hides nothing of: flat splats of a curved surface.
@@ -116,18 +151,8 @@ Pipeline machine_pipeline() {
 }
 
 PrecisionScene precision_plane(double tilt_degrees, int surfels_a_side, int frame_size) {
-  const double tilt = tilt_degrees * std::numbers::pi / 180;
-  const double distance = surfels_a_side;
-  const traces::Scene scene = traces::parse_scene(
-      fmt::format(
-          "[surfels]\ngenerator = \"plane\"\ncolumns = {0}\nrows = {0}\nchecker_light = [0.9, 0.8, 0.7]\n"
-          "checker_dark = [0.1, 0.15, 0.2]\n"
-          "[frame]\nwidth = {1}\nheight = {1}\n"
-          "[camera]\neye = [0, {2}, {3}]\ntarget = [0, 0, 0]\nup = [0, {3}, -{2}]\nfov_y_degrees = 60\n"
-          "near = 1\nfar = {4}\n",
-          surfels_a_side, frame_size, distance * std::cos(tilt), distance * std::sin(tilt), 4 * distance),
-      "precision-plane");
-  return with_references(fmt::format("{:.0f} deg", tilt_degrees), scene, true);
+  return with_references(fmt::format("{:.0f} deg", tilt_degrees),
+                         tilted_plane(tilt_degrees, surfels_a_side, surfels_a_side, frame_size), true);
 }
 
 PrecisionScene precision_model(int surfels, int frame_size) {
@@ -199,26 +224,20 @@ std::vector<OverlapRow> overlap_rows(std::span<const double> overlaps, int frame
                             {"float32", FrameFormat::float32, nearest}};
   std::vector<OverlapRow> rows;
   for (const double count : overlaps) {
-    // A splat of the unit plane seen from above is a circle of radius sqrt(2) h; the prefilter adds little to
-    // it.
-    PrecisionScene plane = precision_plane(0, frame_size / 2, frame_size);
-    for (traces::Surfel& surfel : plane.scene.surfels) {
-      surfel.radius = static_cast<float>(std::sqrt(count / (2 * std::numbers::pi)));
-      surfel.color = {1, 1, 1};
-    }
-    const kernels::SplatSums sums = single_surface_reference(plane.scene);  // of weights gamma
-    const double median = median_weight(sums);
-    const double weight = kBrightness / median * plane.scene.splatting.gamma;
+    const traces::Scene scene = overlapping_splats(count, frame_size);
+    const kernels::SplatSums sums = single_surface_reference(scene);  // of weights gamma
+    const double largest = std::ranges::max(sums.sums, {}, &glm::dvec4::w).w;
+    const double scale = kBrightness / largest;
     for (const Buffer& buffer : buffers) {
       NumberFormats numbers = ideal_pipeline().numbers;
       numbers.frame = buffer.format;
       numbers.frame_rounding = buffer.rounding;
-      const Frame frame = draw_with_weight(plane.scene, weight, numbers);
+      const Frame frame = draw_with_weight(scene, scale * scene.splatting.gamma, numbers);
       OverlapRow row{buffer.name, count, 0, 0, 0};
       double pixels = 0;
       for (std::size_t i = 0; i < sums.sums.size(); ++i) {
-        if (sums.sums[i].w < 0.9 * median) continue;
-        const double should = sums.sums[i].w * weight / plane.scene.splatting.gamma;
+        if (!(sums.sums[i].w > 0)) continue;
+        const double should = sums.sums[i].w * scale;
         const double is = double{frame.color(i)[0]};
         row.bias += 255 * (is - should);
         row.saturated += is >= 1;

@@ -72,7 +72,8 @@ struct SwitchRow {
 std::vector<SwitchRow> switch_rows(std::span<const Switch> switches, std::span<const PrecisionScene> scenes,
                                    const Progress& progress = {});
 
-// White splats, each the same share of 0.73, so many on each pixel, into a frame buffer.
+// White splats of the same weight, so many on each pixel, in a frame buffer: the sums of them are 0.73 where
+// they are largest.
 struct OverlapRow {
   std::string frame;                // "unorm8, truncate"
   double overlaps = 0;              // splats that touch a pixel, on average

@@ -131,7 +131,7 @@ class Sampler {
     weigh();
     Result result;
     result.cycles = static_cast<Cycle>(std::llround(estimated(machine_->cycles())));
-    result.seconds = static_cast<double>(result.cycles) * static_cast<double>(machine_->core.time(1)) * 1e-15;
+    result.seconds = seconds_of(result.cycles, machine_->core.time(1));
     for (const Cycle end : machine_->host->command_ends())
       result.command_ends.push_back(static_cast<Cycle>(std::llround(estimated(machine_->core_cycle(end)))));
     result.frame_cycles = cycles_of_frames(trace_, result);

@@ -39,7 +39,7 @@ class ThroughputEstimate::State {
     Result result;
     result.command_ends = ends_;
     result.cycles = static_cast<Cycle>(std::llround(cycles_));
-    result.seconds = cycles_ / (1e6 * machine_.clock.core_megahertz);
+    result.seconds = seconds_of(result.cycles, period_of(machine_.clock.core_megahertz));
     result.frame_cycles = cycles_of_frames(trace_, result);
     add_units(result);
     return result;

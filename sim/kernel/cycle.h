@@ -20,6 +20,9 @@ inline Femtoseconds femtoseconds_of(double nanoseconds) {
 inline Femtoseconds period_of(double megahertz) {
   return static_cast<Femtoseconds>(std::llround(1e9 / megahertz));
 }
+inline double seconds_of(Cycle cycles, Femtoseconds period) {
+  return static_cast<double>(cycles) * static_cast<double>(period) * 1e-15;
+}
 // Whole cycles of a clock that `time` takes.
 inline Cycle cycles_of(Femtoseconds time, Femtoseconds period) {
   return (time + period - 1) / period;
