@@ -66,7 +66,6 @@ struct GuardRow {
 };
 GuardRow guard_row(const Guard& guard, Arithmetic arithmetic, int surfels, unsigned seed);
 
-std::string text_of(std::span<const ExtremeRow> rows);
 std::string line_of(const GuardRow& row, std::string_view arithmetic);
 
 // Of the study.

@@ -52,8 +52,6 @@ std::string text_of_special_inputs() {
   return text;
 }
 
-}  // namespace
-
 std::string text_of(std::span<const ExtremeRow> rows) {
   std::string text, sweep;
   for (const ExtremeRow& row : rows) {
@@ -68,6 +66,8 @@ std::string text_of(std::span<const ExtremeRow> rows) {
   }
   return text;
 }
+
+}  // namespace
 
 std::string line_of(const GuardRow& row, std::string_view arithmetic) {
   const auto counts = [](const GuardRow::Counts& c) {

@@ -12,7 +12,7 @@
 namespace splatscope::traces {
 namespace {
 
-std::string error_of(std::string_view text) {
+std::string scene_error(std::string_view text) {
   return splatscope::error_of([&] { parse_settings(text, "s.toml"); });
 }
 
@@ -145,44 +145,44 @@ TEST(Scene, ModelsAreMirrored) {
 }
 
 TEST(Scene, ErrorsNameLineAndExpectation) {
-  EXPECT_EQ(error_of("[frame]\nwidth = \"big\"\n"),
+  EXPECT_EQ(scene_error("[frame]\nwidth = \"big\"\n"),
             "s.toml:2: frame.width is 'big', expected a whole number from 1 to 4096");
-  EXPECT_EQ(error_of("[frame]\n\nwidth = 0\n"),
+  EXPECT_EQ(scene_error("[frame]\n\nwidth = 0\n"),
             "s.toml:3: frame.width is 0, expected a whole number from 1 to 4096");
-  EXPECT_EQ(error_of("[frame]\nwidth = 1.5\n"),
+  EXPECT_EQ(scene_error("[frame]\nwidth = 1.5\n"),
             "s.toml:2: frame.width is 1.5, expected a whole number from 1 to 4096");
-  EXPECT_EQ(error_of("[frame]\nwidht = 5\n"),
+  EXPECT_EQ(scene_error("[frame]\nwidht = 5\n"),
             "s.toml:2: unknown key \"widht\" in [frame], expected one of: width, height");
-  EXPECT_EQ(error_of("[cmaera]\n"),
+  EXPECT_EQ(scene_error("[cmaera]\n"),
             "s.toml:1: unknown table \"cmaera\", expected one of: surfels, camera, frame, splatting, "
             "hierarchy, capture, volume");
-  EXPECT_EQ(error_of("camera = 3\n"), "s.toml:1: \"camera\" is a value, expected a table [camera]");
-  EXPECT_EQ(error_of("[splatting]\nalgorithm = \"EWA\"\n"),
+  EXPECT_EQ(scene_error("camera = 3\n"), "s.toml:1: \"camera\" is a value, expected a table [camera]");
+  EXPECT_EQ(scene_error("[splatting]\nalgorithm = \"EWA\"\n"),
             "s.toml:2: splatting.algorithm is 'EWA', expected one of \"no-ewa\", \"ewa-per-pixel\", "
             "\"ewa-per-surfel\"");
-  EXPECT_EQ(error_of("[splatting]\ngamma = nan\n"),
+  EXPECT_EQ(scene_error("[splatting]\ngamma = nan\n"),
             "s.toml:2: splatting.gamma is nan, expected a number from 0 to 1");
-  EXPECT_EQ(error_of("[splatting]\ncircular_cutoff = 1\n"),
+  EXPECT_EQ(scene_error("[splatting]\ncircular_cutoff = 1\n"),
             "s.toml:2: splatting.circular_cutoff is 1, expected true or false");
-  EXPECT_EQ(error_of("[splatting]\ntexture_length = 2049\n"),
+  EXPECT_EQ(scene_error("[splatting]\ntexture_length = 2049\n"),
             "s.toml:2: splatting.texture_length is 2049, expected a whole number from 0 to 2048");
-  EXPECT_EQ(error_of("[splatting]\nrefine = true\nalgorithm = \"no-ewa\"\n"),
+  EXPECT_EQ(scene_error("[splatting]\nrefine = true\nalgorithm = \"no-ewa\"\n"),
             "s.toml:2: splatting.refine with algorithm \"no-ewa\", expected \"ewa-per-surfel\"");
-  EXPECT_EQ(error_of("[camera]\neye = [1, 2]\n"),
+  EXPECT_EQ(scene_error("[camera]\neye = [1, 2]\n"),
             "s.toml:2: camera.eye is [ 1, 2 ], expected an array of three numbers from -1e+30 to 1e+30");
-  EXPECT_EQ(error_of("[camera]\neye = [1, inf, 2]\n"),
+  EXPECT_EQ(scene_error("[camera]\neye = [1, inf, 2]\n"),
             "s.toml:2: camera.eye is [ 1, inf, 2 ], expected an array of three numbers from -1e+30 to 1e+30");
 }
 
 TEST(Scene, CameraMustSeeSomething) {
-  EXPECT_EQ(error_of("[camera]\nfar = 5\nnear = 5\n"),
+  EXPECT_EQ(scene_error("[camera]\nfar = 5\nnear = 5\n"),
             "s.toml:3: camera.near is 5 and camera.far 5, expected near < far");
-  EXPECT_EQ(error_of("[camera]\n\nfar = 0.5\n"),
+  EXPECT_EQ(scene_error("[camera]\n\nfar = 0.5\n"),
             "s.toml:3: camera.near is 1 and camera.far 0.5, expected near < far");
-  EXPECT_EQ(error_of("\n[camera]\ntarget = [1, 1, 1]\neye = [1, 1, 1]\n"),
+  EXPECT_EQ(scene_error("\n[camera]\ntarget = [1, 1, 1]\neye = [1, 1, 1]\n"),
             "s.toml:4: camera.eye equals camera.target, expected two points");
-  EXPECT_EQ(error_of("[camera]\nup = [0, 0, 0]\n"), "s.toml:2: camera.up is zero, expected a direction");
-  EXPECT_EQ(error_of("camera.target = [0, 1, 0]\ncamera.eye = [0, 9, 0]\n"),
+  EXPECT_EQ(scene_error("[camera]\nup = [0, 0, 0]\n"), "s.toml:2: camera.up is zero, expected a direction");
+  EXPECT_EQ(scene_error("camera.target = [0, 1, 0]\ncamera.eye = [0, 9, 0]\n"),
             "s.toml:2: camera.up is [0, 1, 0], along the line of sight, expected another direction");
 }
 
@@ -192,62 +192,62 @@ TEST(Scene, KeysOfTheHierarchyHaveSomethingToActOn) {
        {"block_surfels = 64", "level = \"auto\"", "surfels_per_pixel = 2", "progressive = true"}) {
     const std::string name = key.substr(0, key.find(' '));
     EXPECT_EQ(
-        error_of(plane + key + "\n"),
+        scene_error(plane + key + "\n"),
         fmt::format("s.toml:2: hierarchy.{} without a hierarchy, expected it removed, or hierarchy.culling = "
                     "\"off\" (every block) or \"blocks\", as the plane has none by default",
                     name));
     EXPECT_EQ(
-        error_of(sphere + key + "\nculling = \"none\"\n"),
+        scene_error(sphere + key + "\nculling = \"none\"\n"),
         fmt::format("s.toml:3: hierarchy.{} without a hierarchy, expected it removed, or hierarchy.culling = "
                     "\"off\" (every block) or \"blocks\"",
                     name));
     for (const std::string& with : {plane + "culling = \"off\"\n", plane + "culling = \"blocks\"\n", sphere})
-      EXPECT_EQ(error_of(with + key + (name == "surfels_per_pixel" ? "\nlevel = \"auto\"\n" : "\n")),
+      EXPECT_EQ(scene_error(with + key + (name == "surfels_per_pixel" ? "\nlevel = \"auto\"\n" : "\n")),
                 "no error");
   }
-  EXPECT_EQ(error_of(sphere + "progressive = true\nculling = \"none\"\nblock_surfels = 64\n"),
+  EXPECT_EQ(scene_error(sphere + "progressive = true\nculling = \"none\"\nblock_surfels = 64\n"),
             "s.toml:5: hierarchy.block_surfels, hierarchy.progressive without a hierarchy, expected them "
             "removed, or hierarchy.culling = \"off\" (every block) or \"blocks\"");
-  EXPECT_EQ(error_of(sphere + "surfels_per_pixel = 2\n"),
+  EXPECT_EQ(scene_error(sphere + "surfels_per_pixel = 2\n"),
             "s.toml:3: hierarchy.surfels_per_pixel with level \"finest\", expected level = \"auto\"");
-  EXPECT_EQ(error_of(plane + "level = \"finest\"\nprogressive = false\n"), "no error");
+  EXPECT_EQ(scene_error(plane + "level = \"finest\"\nprogressive = false\n"), "no error");
 }
 
 TEST(Scene, KeysOfSurfelsHaveSomethingToActOn) {
   for (const std::string key : {"columns = 4", "rows = 4", "checker_square = 2", "checker_light = [1, 0, 0]",
                                 "checker_dark = [1, 0, 0]"}) {
-    EXPECT_EQ(error_of("[surfels]\n" + key + "\n"), "no error");
+    EXPECT_EQ(scene_error("[surfels]\n" + key + "\n"), "no error");
     for (const char* other : {"generator = \"sphere\"\ncount = 20\n", "file = \"none.ply\"\n"})
-      EXPECT_EQ(error_of("[surfels]\n" + key + "\n" + other),
+      EXPECT_EQ(scene_error("[surfels]\n" + key + "\n" + other),
                 fmt::format("s.toml:2: surfels.{} without the plane, expected it removed, or surfels with "
                             "generator = \"plane\" and no file",
                             key.substr(0, key.find(' '))));
   }
   for (const std::string key :
        {"count = 30", "pattern = \"checker\"", "pattern_scale = 0.5", "shading = 0.5"}) {
-    EXPECT_EQ(error_of("[surfels]\n\n" + key + "\n"),
+    EXPECT_EQ(scene_error("[surfels]\n\n" + key + "\n"),
               fmt::format("s.toml:3: surfels.{} without a mesh or a model, expected it removed, or surfels "
                           "with a file with faces or another generator than the plane",
                           key.substr(0, key.find(' '))));
   }
   for (const std::string key : {"mirror = true", "neighbours = 9"})
-    EXPECT_EQ(error_of("[surfels]\n" + key + "\n"),
+    EXPECT_EQ(scene_error("[surfels]\n" + key + "\n"),
               fmt::format("s.toml:2: surfels.{} without a file or a model, expected it removed, or surfels "
                           "with a file or another generator than the plane",
                           key.substr(0, key.find(' '))));
   const std::string sphere = "[surfels]\ngenerator = \"sphere\"\ncount = 20\n";
-  EXPECT_EQ(error_of(sphere + "pattern = \"zebra\"\npattern_scale = 0.5\nshading = 0\nmirror = true\n"),
+  EXPECT_EQ(scene_error(sphere + "pattern = \"zebra\"\npattern_scale = 0.5\nshading = 0\nmirror = true\n"),
             "no error");
-  EXPECT_EQ(error_of(sphere + "columns = 256\n"), "no error") << "its default";
+  EXPECT_EQ(scene_error(sphere + "columns = 256\n"), "no error") << "its default";
   EXPECT_EQ(
-      error_of(sphere + "columns = 4\nrows = 4\n"),
+      scene_error(sphere + "columns = 4\nrows = 4\n"),
       "s.toml:4: surfels.columns, surfels.rows without the plane, expected them removed, or surfels with "
       "generator = \"plane\" and no file");
   for (const std::string pattern : {"", "pattern = \"plain\"\n"})
-    EXPECT_EQ(error_of(sphere + "pattern_scale = 0.5\n" + pattern),
+    EXPECT_EQ(scene_error(sphere + "pattern_scale = 0.5\n" + pattern),
               "s.toml:4: surfels.pattern_scale without squares, stripes or spots, expected it removed, or "
               "another surfels.pattern");
-  EXPECT_EQ(error_of("[surfels]\nfile = \"none.ply\"\ngenerator = \"sphere\"\n"),
+  EXPECT_EQ(scene_error("[surfels]\nfile = \"none.ply\"\ngenerator = \"sphere\"\n"),
             "s.toml:3: surfels.generator beside surfels.file, expected one of them");
 }
 
@@ -271,15 +271,15 @@ TEST(Scene, APlaneIsNotBeyondWhatIsSeen) {
 }
 
 TEST(Scene, CaptureBoxIsTheRightWayRound) {
-  EXPECT_EQ(error_of("\n[capture]\nbox_min = [0, 1, 0]\nbox_max = [1, 0, 1]\n"),
+  EXPECT_EQ(scene_error("\n[capture]\nbox_min = [0, 1, 0]\nbox_max = [1, 0, 1]\n"),
             "s.toml:3: capture.box_min exceeds capture.box_max, expected min <= max in x, y and z");
-  EXPECT_EQ(error_of("[capture]\nbox_min = [0, 0, 0]\nbox_max = [0, 0, 0]\n"), "no error");
+  EXPECT_EQ(scene_error("[capture]\nbox_min = [0, 0, 0]\nbox_max = [0, 0, 0]\n"), "no error");
 }
 
 TEST(Scene, WrongTomlIsTheUsersErrorWithItsLine) {
-  EXPECT_EQ(error_of("[frame]\nwidth = \n").find("s.toml:2: "), 0u) << error_of("[frame]\nwidth = \n");
-  EXPECT_EQ(error_of("[frame]\nwidth = 1\nwidth = 2\n").find("s.toml:3: "), 0u);
-  EXPECT_EQ(error_of(std::string(100000, '[')).find("s.toml:1: "), 0u);
+  EXPECT_EQ(scene_error("[frame]\nwidth = \n").find("s.toml:2: "), 0u) << scene_error("[frame]\nwidth = \n");
+  EXPECT_EQ(scene_error("[frame]\nwidth = 1\nwidth = 2\n").find("s.toml:3: "), 0u);
+  EXPECT_EQ(scene_error(std::string(100000, '[')).find("s.toml:1: "), 0u);
 }
 
 TEST(Scene, ReadyScenesAreTheThreeAlgorithms) {
@@ -296,7 +296,7 @@ TEST(SceneKeys, DefaultsKeepTheirOwnRanges) {
     if (key.table != table) text += fmt::format("[{}]\n", table = key.table);
     text += fmt::format("{} = {}\n", key.name, default_text(key));
   }
-  EXPECT_EQ(error_of(text), "no error") << text;
+  EXPECT_EQ(scene_error(text), "no error") << text;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace splatscope::traces {
 namespace {
 
-std::string error_of(const std::string& text) {
+std::string volume_scene_error(const std::string& text) {
   return splatscope::error_of([&] { parse_volume_scene(text, "a.toml"); });
 }
 
@@ -36,7 +36,7 @@ TEST(VolumeScene, EveryKeyHasADefault) {
 TEST(VolumeScene, DefaultsKeepTheirOwnRanges) {
   std::string text = "[volume]\n";
   for (const SceneKey& key : volume_keys()) text += fmt::format("{} = {}\n", key.name, default_text(key));
-  EXPECT_EQ(error_of(text), "no error") << text;
+  EXPECT_EQ(volume_scene_error(text), "no error") << text;
 }
 
 TEST(VolumeScene, ReadsItsKeys) {
@@ -66,27 +66,28 @@ width = 64
 }
 
 TEST(VolumeScene, SaysWhatIsWrong) {
-  EXPECT_EQ(error_of("[surfels]\n"), "a.toml: has no [volume], expected a scene with a volume");
-  EXPECT_EQ(error_of("[volume]\n[surfels]\n"),
+  EXPECT_EQ(volume_scene_error("[surfels]\n"), "a.toml: has no [volume], expected a scene with a volume");
+  EXPECT_EQ(volume_scene_error("[volume]\n[surfels]\n"),
             "a.toml:2: [surfels] beside [volume], expected [camera], [frame] and [volume] alone");
   EXPECT_EQ(
-      error_of("[volume]\nvoxels = [4, 4, 5]\n"),
+      volume_scene_error("[volume]\nvoxels = [4, 4, 5]\n"),
       "a.toml:2: volume.voxels is [4, 4, 5], expected three times the same whole number from 2 on, at most "
       "67108864 voxels in all, or three zeros");
   for (const char* wrong : {"[0, 0, 20]", "[1.5, 2, 3]", "[1024, 1024, 65]"})
-    EXPECT_EQ(error_of(fmt::format("[volume]\ngenerator = \"head\"\nvoxels = {}\n", wrong)),
+    EXPECT_EQ(volume_scene_error(fmt::format("[volume]\ngenerator = \"head\"\nvoxels = {}\n", wrong)),
               fmt::format(
                   "a.toml:3: volume.voxels is {}, expected whole numbers from 1 on, at most 67108864 voxels "
                   "in all, or three zeros",
                   wrong));
-  EXPECT_EQ(error_of("[volume]\nlight = [0, 0, 0]\n"),
+  EXPECT_EQ(volume_scene_error("[volume]\nlight = [0, 0, 0]\n"),
             "a.toml:2: volume.light is zero, expected a direction");
-  EXPECT_EQ(error_of("[volume]\nfile = \"none.nrrd\"\n"), "none.nrrd: cannot be read, expected a NRRD file");
+  EXPECT_EQ(volume_scene_error("[volume]\nfile = \"none.nrrd\"\n"),
+            "none.nrrd: cannot be read, expected a NRRD file");
   for (const char* points :
        {"[{ value = 1, opacity = 2, color = [0, 0, 0] }]", "[{ value = 1 }]", "3", "[3]",
         "[{ value = nan, opacity = 0, color = [0, 0, 0] }]",
         "[{ value = 2, opacity = 0, color = [0, 0, 0] }, { value = 1, opacity = 0, color = [0, 0, 0] }]"}) {
-    const std::string text = error_of(std::string("[volume]\ntransfer = ") + points + "\n");
+    const std::string text = volume_scene_error(std::string("[volume]\ntransfer = ") + points + "\n");
     EXPECT_TRUE(text.starts_with("a.toml:2: volume.transfer is ")) << text;
   }
 }
