@@ -16,6 +16,9 @@ inline constexpr std::size_t kMostTextBytes = 1 << 20;
 // is read.
 std::string read_text_file(const std::filesystem::path& path, std::string_view expected);
 
+// The text as a string of TOML, in quotes.
+std::string toml_string(const std::string& text);
+
 // Throws UserError "file:line: ..." where `text` is no TOML, or names tables within tables so deep that no
 // file of splatscope could mean it.
 toml::table parse_toml(std::string_view text, std::string_view file);

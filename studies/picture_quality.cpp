@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/input_file.h"
 #include "studies/measure.h"
 #include "studies/run.h"
 #include "traces/gamma.h"
@@ -134,7 +135,7 @@ std::vector<ModelScene> real_models(const std::filesystem::path& folder) {
     const std::filesystem::path path = std::filesystem::absolute(folder / file);
     std::error_code error;
     if (std::filesystem::exists(path, error))
-      models.push_back({path.stem().string(), fmt::format("file = '{}'\n", path.string())});
+      models.push_back({path.stem().string(), fmt::format("file = {}\n", toml_string(path.string()))});
   }
   return models;
 }
@@ -174,7 +175,7 @@ QualityRow quality_of(const std::string& name, traces::Scene scene, const Machin
 }
 
 void study_quality(Findings& findings, const Progress& progress) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const std::vector<ModelScene> models = all_models();
   findings.report().heading("Pictures of models against the double-precision reference");
   auto list = nlohmann::ordered_json::array();

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "kernels/object_space_ewa/alpha_texture.h"
+#include "model/input_file.h"
 #include "model/machine/machine.h"
 #include "model/render.h"
 #include "studies/picture_quality.h"
@@ -146,7 +147,7 @@ Pipeline ideal_pipeline() {
 
 Pipeline machine_pipeline() {
   Pipeline pipeline;
-  pipeline.numbers = machine::load("geforce4-ti4400").numbers;
+  pipeline.numbers = machine::load(machine::kGeForce4).numbers;
   return pipeline;
 }
 
@@ -159,9 +160,10 @@ PrecisionScene precision_model(int surfels, int frame_size) {
   const std::filesystem::path fetched = std::filesystem::path(kModelsFolder) / "armadillo.off";
   const bool there = std::filesystem::exists(fetched);
   const traces::Scene scene = traces::parse_scene(
-      fmt::format("[surfels]\n{}\ncount = {}\npattern = \"checker\"\n[frame]\nwidth = {}\nheight = {}\n",
-                  there ? fmt::format("file = \"{}\"", fetched.string()) : "generator = \"torus-knot\"",
-                  surfels, frame_size, frame_size),
+      fmt::format(
+          "[surfels]\n{}\ncount = {}\npattern = \"checker\"\n[frame]\nwidth = {}\nheight = {}\n",
+          there ? fmt::format("file = {}", toml_string(fetched.string())) : "generator = \"torus-knot\"",
+          surfels, frame_size, frame_size),
       "precision.toml");
   return with_references(there ? "armadillo" : "torus knot", scene, false);
 }

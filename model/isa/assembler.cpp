@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <string>
 #include <utility>
 
@@ -48,15 +49,14 @@ class Parser {
     const bool vertex = word == "vs_1_1";
     const bool pixel = word.size() == 6 && word.starts_with("ps_1_") && word[5] >= '1' && word[5] <= '4';
     if (!vertex && !pixel)
-      lexer_.fail(where,
-                  fmt::format("'{}' is not a version, expected vs_1_1 or ps_1_1 to ps_1_4 first", word));
+      lexer_.fail(where, is_not(word, "a version") + ", expected vs_1_1 or ps_1_1 to ps_1_4 first");
     program_.version = {vertex ? ShaderKind::vertex : ShaderKind::pixel, 1, word[5] - '0'};
   }
 
   // Between statements: the end of a line, or the '+' of the next one.
   void expect_line_end() {
     lexer_.skip_blanks();
-    if (!lexer_.at_line_end() && lexer_.peek() != '+') lexer_.fail(here(), "expected the end of the line");
+    if (!lexer_.at_line_end() && lexer_.peek() != '+') fail_expecting(here(), "the end of the line");
     lexer_.skip_blank_lines();
   }
 
@@ -65,7 +65,7 @@ class Parser {
     if (coissue) lexer_.skip_blank_lines();
     const Place where = here();
     const std::string word = lexer_.word();
-    if (word.empty()) lexer_.fail(where, "expected an instruction");
+    if (word.empty()) fail_expecting(where, "an instruction");
     if (word == "def" && !coissue) return parse_definition(where);
     if ((word == "dcl" || word.starts_with("dcl_")) && !coissue) return parse_declaration(where, word);
     parse_instruction(where, word, coissue);
@@ -84,7 +84,7 @@ class Parser {
       expect_comma();
       const Place number_at = here();
       const auto number = lexer_.number();
-      if (!number) lexer_.fail(number_at, "expected a number of 32 bits");
+      if (!number) fail_expecting(number_at, "a number of 32 bits");
       value = *number;
     }
     program_.definitions.push_back(definition);
@@ -100,14 +100,15 @@ class Parser {
     declaration.line = where.line;
     declaration.column = where.column;
     declaration.before = program_.instructions.size();
-    int number = 0;
+    int number = 0, index = 0;
     while (number < kUsages && usage_name(number) != usage) ++number;
-    if (number == kUsages || digits.size() > 2 || (digits.size() == 2 && digits > "15"))
+    const char* const end = digits.data() + digits.size();
+    if (number == kUsages || digits.size() > 2 || std::from_chars(digits.data(), end, index).ptr != end ||
+        index > kMostUsageIndex)
       lexer_.fail(where,
                   fmt::format("'{}' is not a declaration, expected dcl_position, dcl_normal0, ...", word));
     declaration.usage = static_cast<std::uint8_t>(number);
-    for (const char digit : digits)
-      declaration.usage_index = static_cast<std::uint8_t>(declaration.usage_index * 10 + (digit - '0'));
+    declaration.usage_index = static_cast<std::uint8_t>(index);
     const Place at = here();
     declaration.destination = parse_destination();
     if (declaration.destination.file != RegisterFile::input)
@@ -177,8 +178,7 @@ class Parser {
     const Place where = here();
     const std::string word = lexer_.word();
     const auto name = parse_register(program_.version.kind, word);
-    if (!name)
-      lexer_.fail(where, fmt::format("'{}' is not a register of {}", word, to_string(program_.version)));
+    if (!name) fail_for_register(where, word);
     if (lexer_.peek() == '[') lexer_.fail(where, "a destination cannot be indexed, only a source c#");
     Destination destination;
     destination.file = name->file;
@@ -209,7 +209,7 @@ class Parser {
     const Place where = here();
     std::string word = lexer_.word();
     if (word == "1" && program_.version.kind == ShaderKind::pixel && !source.negate) {
-      if (!lexer_.accept('-')) lexer_.fail(where, "expected '1 - register'");
+      if (!lexer_.accept('-')) fail_expecting(here(), "'-' and a register behind the 1");
       source.modifier = SourceModifier::invert;
       lexer_.skip_blanks();
       word = lexer_.word();
@@ -228,18 +228,17 @@ class Parser {
       const auto base = parse_register(program_.version.kind, numbered ? word : word + "0");
       if (!base || base->file != RegisterFile::constant)
         lexer_.fail(where, fmt::format("'{}' cannot be indexed, only c[...]", word));
-      return parse_indexed_constant(where, base->index, source);
+      return parse_indexed_constant(base->index, source);
     }
     const auto name = parse_register(program_.version.kind, word);
-    if (!name)
-      lexer_.fail(where, fmt::format("'{}' is not a register of {}", word, to_string(program_.version)));
+    if (!name) fail_for_register(where, word);
     source.file = name->file;
     source.index = static_cast<std::uint16_t>(name->index);
   }
 
   // c[a0.x], c[a0.x + 3], c1[2 + a0.x + 3], c[3] and so on, after the bracket: the sum of all numbers, as
   // D3DX reads them.
-  void parse_indexed_constant(Place where, int index, Source& source) {
+  void parse_indexed_constant(int index, Source& source) {
     source.file = RegisterFile::constant;
     do {
       const Place at = here();
@@ -250,14 +249,14 @@ class Parser {
         source.relative = true;
       } else {
         const auto number = parse_register(ShaderKind::vertex, "c" + word);
-        if (!number) lexer_.fail(at, fmt::format("'{}' is not an index, expected c[a0.x + number]", word));
+        if (!number) lexer_.fail(at, is_not(word, "an index") + ", expected c[a0.x + number]");
         index += number->index;
         if (index > kMaximumIndex)
           lexer_.fail(at, fmt::format("c{} does not exist, expected c{} at most", index, kMaximumIndex));
       }
     } while (lexer_.accept('+'));
     source.index = static_cast<std::uint16_t>(index);
-    if (!lexer_.accept(']')) lexer_.fail(where, "expected ']'");
+    if (!lexer_.accept(']')) fail_expecting(here(), "']'");
   }
 
   void apply_source_modifier(Place where, std::string_view suffix, Source& source) {
@@ -268,7 +267,10 @@ class Parser {
         std::ranges::find(kModifiers, suffix, &std::pair<std::string_view, SourceModifier>::first);
     if (program_.version.kind != ShaderKind::pixel || found == std::end(kModifiers) ||
         source.modifier != none)
-      lexer_.fail(where, fmt::format("'_{}' is not a source modifier here", suffix));
+      lexer_.fail(where,
+                  fmt::format("'_{}' is not a source modifier here, expected one of _bias _bx2 _x2 _dz _dw "
+                              "in a pixel program",
+                              suffix));
     const bool divides = found->second == dz || found->second == dw;
     if (divides && source.negate)
       lexer_.fail(where, fmt::format("'_{}' cannot be combined with negation", suffix));
@@ -288,7 +290,20 @@ class Parser {
   }
 
   void expect_comma() {
-    if (!lexer_.accept(',')) lexer_.fail(here(), "expected ',' and another operand");
+    if (!lexer_.accept(',')) fail_expecting(here(), "',' and another operand");
+  }
+
+  [[noreturn]] void fail_expecting(Place where, std::string_view expected) {
+    lexer_.fail(where, fmt::format("{}, expected {}", lexer_.found(), expected));
+  }
+  // "'word' is not a register"
+  std::string is_not(std::string_view word, std::string_view what) {
+    return word.empty() ? lexer_.found() : fmt::format("'{}' is not {}", word, what);
+  }
+  [[noreturn]] void fail_for_register(Place where, std::string_view word) {
+    const std::string expected = fmt::format("a register of {}", to_string(program_.version));
+    if (word.empty()) fail_expecting(where, expected);
+    lexer_.fail(where, is_not(word, expected));
   }
 
   Place here() {

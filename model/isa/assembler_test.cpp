@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 #include "model/isa/program.h"
 #include "model/testing/error_of.h"
@@ -85,14 +87,34 @@ TEST(Assembler, ErrorsNameFileLineColumnAndRule) {
   EXPECT_EQ(error_of("vs_1_1\n#line 3\nmov oPos, v0 # iffy\n"), "no error");
   EXPECT_EQ(error_of("mov oPos, v0\n"),
             "a.vs:1:1: 'mov' is not a version, expected vs_1_1 or ps_1_1 to ps_1_4 first");
-  EXPECT_EQ(error_of("vs_1_1\nmov oPos v0\n"), "a.vs:2:10: expected ',' and another operand");
-  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0 v1\n"), "a.vs:2:14: expected the end of the line");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos v0\n"),
+            "a.vs:2:10: 'v0' stands here, expected ',' and another operand");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0 v1\n"),
+            "a.vs:2:14: 'v1' stands here, expected the end of the line");
   EXPECT_EQ(error_of("vs_1_1\nmov oPos.yx, v0\n"),
             "a.vs:2:10: '.yx' is not a write mask, expected letters of xyzw or rgba in that order");
   EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0 /* \n"), "a.vs:2:14: this comment does not end, expected */");
   EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0\nadd r0, c0, c1\n"),
             "a.vs:3:1: 2 different c# registers in one instruction, vs_1_1 has 1 read port");
-  EXPECT_EQ(error_of(""), "a.vs:1:1: '' is not a version, expected vs_1_1 or ps_1_1 to ps_1_4 first");
+  EXPECT_EQ(error_of(""), "a.vs:1:1: the line ends here, expected vs_1_1 or ps_1_1 to ps_1_4 first");
+  EXPECT_EQ(error_of("[surfels]\n"), "a.vs:1:1: '[' stands here, expected vs_1_1 or ps_1_1 to ps_1_4 first");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos,\n"), "a.vs:2:10: the line ends here, expected a register of vs_1_1");
+  EXPECT_EQ(
+      error_of("vs_1_1\nmov oPos, v0_x3\n"),
+      "a.vs:2:11: '_x3' is not a source modifier here, expected one of _bias _bx2 _x2 _dz _dw in a pixel "
+      "program");
+}
+
+TEST(Assembler, UsagesHaveAnIndexFrom0To15) {
+  const auto declared = [](std::string_view usage) {
+    return error_of(fmt::format("vs_1_1\ndcl_{} v1\nmov oPos, v1\n", usage));
+  };
+  for (const char* usage : {"texcoord", "texcoord0", "texcoord07", "texcoord15"})
+    EXPECT_EQ(declared(usage), "no error") << usage;
+  for (const char* usage : {"texcoord16", "texcoord007", "texcoord0z", "texcoord1_", "tex2"})
+    EXPECT_EQ(declared(usage), fmt::format("a.vs:2:1: 'dcl_{}' is not a declaration, expected dcl_position, "
+                                           "dcl_normal0, ...",
+                                           usage));
 }
 
 }  // namespace

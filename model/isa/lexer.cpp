@@ -1,5 +1,7 @@
 #include "model/isa/lexer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -9,6 +11,8 @@
 
 namespace splatscope::isa {
 namespace {
+
+constexpr std::size_t kLongestShown = 32;  // of a word in a message
 
 bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
@@ -113,6 +117,15 @@ std::string Lexer::version_word() {
   for (; !at_end() && (is_word(text_[position_]) || text_[position_] == '.'); advance())
     result += text_[position_];
   return result;
+}
+
+std::string Lexer::found() const {
+  if (at_line_end()) return "the line ends here";
+  std::size_t end = position_;
+  const auto continues = [](char c) { return is_word(c) || (c & 0x80) != 0; };  // UTF-8, too
+  while (end < text_.size() && continues(text_[end])) ++end;
+  const std::size_t shown = std::clamp<std::size_t>(end - position_, 1, kLongestShown);
+  return fmt::format("'{}' stands here", std::string_view(text_).substr(position_, shown));
 }
 
 std::optional<float> Lexer::number() {

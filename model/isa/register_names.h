@@ -24,5 +24,6 @@ std::string register_name(RegisterFile file, int index);
 // Usage names of `dcl_usage`, by D3DDECLUSAGE; empty where there is none.
 std::string_view usage_name(int usage);
 inline constexpr int kUsages = 14;
+inline constexpr int kMostUsageIndex = 15;  // four bits of its token
 
 }  // namespace splatscope::isa

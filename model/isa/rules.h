@@ -11,8 +11,9 @@ namespace splatscope::isa {
 // Throws UserError at the instruction's place.
 [[noreturn]] void reject(const Program& program, const Instruction& at, std::string_view rule);
 
-// The swizzle of a source that names none, and whether all four components are the same one.
+// The swizzle of a source that names none.
 inline constexpr std::array<std::uint8_t, 4> kIdentity{0, 1, 2, 3};
+// Whether all four components of its swizzle are the same one.
 bool is_replicated(const Source& source);
 
 // The components of each temporary that something has written so far (bit 0 = x).

@@ -142,7 +142,8 @@ struct Machine {
 
 namespace machine {
 
-// The machines that are part of the program, by name: "geforce4-ti4400", "radeon-8500".
+// The machines that are part of the program, by name; the first is taken where none is named.
+inline constexpr std::string_view kGeForce4 = "geforce4-ti4400", kRadeon8500 = "radeon-8500";
 std::vector<std::string_view> built_in_names();
 
 // A built-in machine by name, or a TOML file by path (a name with a '.' or a '/').
