@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <set>
 
 #include "model/error.h"
@@ -39,6 +40,12 @@ std::vector<traces::NamedFile> MachineOptions::files_with(const std::string& inp
   for (const std::string& program : programs)
     files.push_back({"--program", program.substr(program.find('=') + 1)});
   return files;
+}
+
+void add_seed_option(CLI::App& command, std::uint64_t& seed) {
+  command.add_option("--seed", seed, "of the random start of the samples of --fidelity sampled")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
+      ->capture_default_str();
 }
 
 }  // namespace splatscope::app

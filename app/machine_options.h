@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace splatscope::app {
 
 // What the commands that run an input on a machine have in common: --machine, --set and --program.
 struct MachineOptions {
-  std::string name = "geforce4-ti4400";
+  std::string name{machine::kGeForce4};
   std::vector<std::string> settings;  // KEY=VALUE
   std::vector<std::string> programs;  // NAME=FILE
 
@@ -24,5 +25,8 @@ struct MachineOptions {
   // What a command that runs `input` reads by its command line alone.
   std::vector<traces::NamedFile> files_with(const std::string& input) const;
 };
+
+// --seed, of commands with --fidelity.
+void add_seed_option(CLI::App& command, std::uint64_t& seed);
 
 }  // namespace splatscope::app

@@ -20,8 +20,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double fraction_done);  // 0 to 1; at 1 the line goes, so that results can be printed
-  std::function<void(double)>
-  callback();  // show(), for what reports its progress; empty where nothing is shown
+  // show(), for work that reports its progress; empty where nothing is shown.
+  std::function<void(double)> callback();
   void clear();
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 struct Options {
   std::string scene;
-  std::string machine = "geforce4-ti4400";
+  std::string machine{machine::kGeForce4};
   std::string out;
 };
 

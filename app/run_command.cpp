@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <future>
 #include <iostream>
-#include <limits>
 #include <memory>
 
 #include "app/commands.h"
@@ -118,8 +117,7 @@ void expect_apart(const Options& options, std::vector<traces::NamedFile> files) 
 // That the fidelity can write the files that are asked for. A seed may be given to any: one that takes no
 // samples gives the same result by every seed.
 void expect_used(const Options& options, studies::Fidelity fidelity) {
-  const studies::ObserveOptions& observe = options.observe;
-  if (!(observe.timeline + observe.pipeline + observe.counters).empty() && !simulates_cycles(fidelity)) {
+  if (options.observe.asks_for_cycles() && !simulates_cycles(fidelity)) {
     throw UserError(
         "--fidelity", 0,
         fmt::format("{} simulates no cycles to show, expected cycle or referee", options.fidelity));
@@ -210,9 +208,7 @@ void add_run_command(CLI::App& app, Invocation& invocation) {
   options->machine.add_to(*command);
   command->add_option("--fidelity", options->fidelity, "functional, throughput, sampled, cycle or referee")
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "of the random start of the samples of --fidelity sampled")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max() - 1))
-      ->capture_default_str();
+  add_seed_option(*command, options->seed);
   command->add_option("--out", options->out, "folder for the results; those of an earlier run in it go away")
       ->capture_default_str();
   command

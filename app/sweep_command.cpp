@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -22,6 +23,7 @@ struct Options {
   MachineOptions machine;
   std::string fidelity = "cycle";
   std::vector<std::string> swept;
+  std::uint64_t seed = 1;
   std::optional<std::string> cache;
   std::string out = "out";
 };
@@ -31,10 +33,12 @@ void print(const studies::Sweep& sweep) {
   for (const studies::SweepPoint& point : sweep.points) {
     std::string settings;
     for (const auto& [key, value] : point.settings) settings += fmt::format("{}={}  ", key, value);
-    for (const auto& frame : point.results["frames"]) {
-      std::cout << fmt::format("{}{} cycles  {:.2f} fps\n", settings, frame["cycles"].get<std::uint64_t>(),
-                               frame["frames_per_second"].get<double>());
-    }
+    const std::size_t frames = point.results["frames"].size();
+    std::cout << fmt::format(
+        "{}{}{}{} cycles  {:.2f} fps\n", settings,
+        frames == 1 ? "" : fmt::format("{} frames together: ", frames), point.cycles,
+        point.cycles_plus_minus > 0 ? fmt::format(" +- {:.0f}", point.cycles_plus_minus) : "",
+        point.rate.fps);
   }
   for (const auto& path : sweep.damaged)
     std::cout << path.string() << ": damaged or of another format; computed again\n";
@@ -51,10 +55,12 @@ void run(const Options& options, bool quiet) {
     studies::expect_apart_from_results(studies::files_of(opened), options.out);
     folder.emplace(options.out);
   };
-  const studies::Sweep sweep = studies::run_sweep(
-      options.input, machine, swept, fidelity,
-      {.programs = options.machine.programs, .cache = options.cache, .before_work = before_work},
-      running.callback());
+  const studies::Sweep sweep = studies::run_sweep(options.input, machine, swept, fidelity,
+                                                  {.programs = options.machine.programs,
+                                                   .cache = options.cache,
+                                                   .seed = options.seed,
+                                                   .before_work = before_work},
+                                                  running.callback());
   running.clear();
   studies::ResultFiles files(folder->path());
   traces::write_file(files.place("sweep.csv"), studies::csv_of(sweep));
@@ -81,6 +87,7 @@ void add_sweep_command(CLI::App& app, Invocation& invocation) {
   options->machine.add_to(*command);
   command->add_option("--fidelity", options->fidelity, "throughput, sampled, cycle or referee")
       ->capture_default_str();
+  add_seed_option(*command, options->seed);
   command->add_option("--cache", options->cache,
                       "folder that keeps what the function of a frame gives the timing, for later sweeps");
   command->add_option("--out", options->out, "folder for the results")->capture_default_str();

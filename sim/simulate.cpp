@@ -58,16 +58,19 @@ Result run(SimulatedMachine& machine, const Trace& trace, const std::function<vo
 
 }  // namespace
 
-const UnitBooks& Result::busiest() const {
+Result::Bottleneck Result::bottleneck() const {
   const auto is_vertex_unit = [](const UnitBooks& unit) {
     return unit.name.starts_with("vertex") && unit.name.back() >= '0' && unit.name.back() <= '9';
   };
-  Cycle all_vertex_units = std::numeric_limits<Cycle>::max();
+  Cycle all_vertex_units = kNever;
   for (const UnitBooks& unit : units)
     if (is_vertex_unit(unit)) all_vertex_units = std::min(all_vertex_units, unit.busy);
-  return *std::ranges::max_element(units, {}, [&](const UnitBooks& unit) {
-    return std::pair(is_vertex_unit(unit) ? all_vertex_units : unit.busy, unit.busy);
-  });
+  const auto counted = [&](const UnitBooks& unit) {
+    return is_vertex_unit(unit) ? all_vertex_units : unit.busy;
+  };
+  const UnitBooks& busiest = *std::ranges::max_element(
+      units, {}, [&](const UnitBooks& unit) { return std::pair(counted(unit), unit.busy); });
+  return {busiest.name, counted(busiest)};
 }
 
 UnitBooks named_books(const SimulatedMachine& machine, const Unit& unit, const Books& books) {

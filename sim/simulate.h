@@ -61,10 +61,16 @@ struct Result {
   double share(Cycle some) const {
     return cycles == 0 ? 0 : static_cast<double>(some) / static_cast<double>(cycles);
   }
+  struct Bottleneck {
+    std::string unit;
+    Cycle busy = 0;
+  };
   // The unit that was busy for the largest share of the run. Vertex units, of which the first that is free
-  // takes a vertex, count as long as all of them are busy. A memory channel or AGP is busy also while the
-  // latency of a request passes: at 90 % its data bus may be half empty (`data_clocks`).
-  const UnitBooks& busiest() const;
+  // takes a vertex, count together, as busy as the least busy of them, under the name of the busiest. A
+  // memory channel or AGP is busy also while the latency of a request passes: at 90 % its data bus may be
+  // half empty
+  // (`data_clocks`).
+  Bottleneck bottleneck() const;
   // 0 where they take no time.
   double frames_per_second() const { return rate(static_cast<double>(frame_cycles.size()), seconds); }
   double frames_per_second(Cycle one_frame) const { return rate(1, seconds_of(one_frame)); }

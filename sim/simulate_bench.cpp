@@ -13,7 +13,7 @@ void depth_only(benchmark::State& state, Scheduler scheduler, UnitChoice choice)
   std::get<Draw>(made.trace.commands[1]).state.color_write = false;
   for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
   made.work[0].texel_blocks.clear();
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   Cycle cycles = 0;
   for (auto _ : state) cycles += simulate(made.trace, made.work, machine, scheduler, {}, {}, choice).cycles;
   state.counters["cycles"] = benchmark::Counter(static_cast<double>(cycles), benchmark::Counter::kIsRate);
@@ -34,7 +34,7 @@ void draw_past(benchmark::State& state, Scheduler scheduler, void (*change)(Draw
     for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
     made.work[0].texel_blocks.clear();
   }
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   Cycle cycles = 0;
   for (auto _ : state)
     cycles = simulate(made.trace, made.work, machine, scheduler, {}, {}, UnitChoice::all).cycles;

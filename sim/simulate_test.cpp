@@ -8,8 +8,9 @@
 
 #include "model/error.h"
 #include "model/testing/error_of.h"
+#include "sim/machine.h"
 #include "sim/testing/random_trace.h"
-#include "sim/units/vertex/throughput.h"
+#include "sim/units/vertex/vertex_clocks.h"
 
 namespace splatscope::sim {
 namespace {
@@ -97,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomTraces, ::testing::Range(1u, 51u));
 
 TEST(Simulate, TheSameRunTwiceInAProcessIsTheSame) {
   const RandomTrace made = simple_trace(200);
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Result first = simulate(made.trace, made.work, machine);
   for (int i = 0; i < 3; ++i) {
     const Result again = simulate(made.trace, made.work, machine);
@@ -112,12 +113,12 @@ TEST(Simulate, TheSameRunTwiceInAProcessIsTheSame) {
 TEST(Simulate, EachFrameOfATraceHasItsCycles) {
   RandomTrace made = simple_trace(200);
   made.trace.commands.emplace_back(Present{});
-  const Result alone = simulate(made.trace, made.work, machine::load("geforce4-ti4400"));
+  const Result alone = simulate(made.trace, made.work, machine::load(machine::kGeForce4));
   const Command clear = made.trace.commands[0], draw = made.trace.commands[1];
   made.trace.commands = {clear, draw, Present{}, clear, draw, Present{}, clear, draw, Present{}};
   made.work = {made.work[0], made.work[0], made.work[0]};
   for (std::size_t i = 0; i < 3; ++i) made.work[i].command = static_cast<std::uint32_t>(3 * i + 1);
-  const Result three = simulate(made.trace, made.work, machine::load("geforce4-ti4400"));
+  const Result three = simulate(made.trace, made.work, machine::load(machine::kGeForce4));
   ASSERT_EQ(three.frame_cycles.size(), 3u);
   EXPECT_EQ(alone.frame_cycles, std::vector<Cycle>{alone.cycles});
   for (const Cycle cycles : three.frame_cycles) {
@@ -128,7 +129,7 @@ TEST(Simulate, EachFrameOfATraceHasItsCycles) {
 }
 
 TEST(Simulate, VertexBoundDrawsTakeTheScheduledClocksAVertex) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const RandomTrace small = simple_trace(200), large = simple_trace(1200);
   const Result a = simulate(small.trace, small.work, machine);
   const Result b = simulate(large.trace, large.work, machine);
@@ -141,7 +142,7 @@ TEST(Simulate, VertexBoundDrawsTakeTheScheduledClocksAVertex) {
 TEST(Simulate, UnitsThatNoDrawNeedsAreLeftOut) {
   RandomTrace made = simple_trace(10);
   Draw& draw = std::get<Draw>(made.trace.commands[1]);
-  const Machine machine = machine::load("radeon-8500");
+  const Machine machine = machine::load(machine::kRadeon8500);
   const Result all = simulate(made.trace, made.work, machine);
   EXPECT_NE(books_of(all, "texture"), nullptr);
   EXPECT_EQ(units_without(all), std::vector<std::string>{"agp"});
@@ -165,7 +166,7 @@ TEST(Simulate, ATextureThatNoProgramSamplesCostsNothing) {
   for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
   made.work[0].texel_blocks.clear();
   Draw& draw = std::get<Draw>(made.trace.commands[1]);
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const auto result = [&] { return simulate(made.trace, made.work, machine); };
   const Cycle sampled = result().cycles;
   made.trace.programs[2].text = "ps_1_1\nmov r0, v0\n";
@@ -187,15 +188,17 @@ TEST(Simulate, VertexUnitsAreBusyWhereAllOfThemAre) {
       books.name = name;
       books.busy = busy;
     }
-    return result.busiest().name;
+    return result.bottleneck();
   };
-  EXPECT_EQ(busiest(98, 53), "agp");
-  EXPECT_EQ(busiest(52, 53), "vertex0");
+  EXPECT_EQ(busiest(98, 53).unit, "agp");
+  EXPECT_EQ(busiest(98, 53).busy, 98u);
+  EXPECT_EQ(busiest(52, 53).unit, "vertex0");
+  EXPECT_EQ(busiest(52, 53).busy, 53u);
 }
 
 TEST(Simulate, ASecondVertexUnitHalvesAVertexBoundDraw) {
   const RandomTrace made = simple_trace(1200);
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine.vertex.units = 1;
   const Result one = simulate(made.trace, made.work, machine);
   machine.vertex.units = 2;
@@ -208,7 +211,7 @@ TEST(Simulate, ASecondVertexUnitHalvesAVertexBoundDraw) {
 
 TEST(Simulate, VerticesOverAgpTakeTheBus) {
   RandomTrace made = simple_trace(400);
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Result video = simulate(made.trace, made.work, machine);
   made.trace.buffers[0].place = MemoryPlace::agp;
   std::get<Draw>(made.trace.commands[1]).vertex_stride = 256;
@@ -221,7 +224,7 @@ TEST(Simulate, VerticesOverAgpTakeTheBus) {
 
 // The host rewrites all colours, so a draw behind it reads them all again; behind a Present it does not.
 TEST(Simulate, ColoursThatTheHostRewroteAreReadAgain) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine::assign(machine, "blend.cache_lines=1024");
   const auto misses = [&](const Command& between) {
     RandomTrace made = simple_trace(200);
@@ -286,7 +289,7 @@ TEST(Simulate, AProgramThatDoesNotLoadIsAUsersError) {
 
 // What `run` says of the user's fault; empty: nothing.
 TEST(Simulate, ATimeThatCannotBeCountedIsAUsersError) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine::set(machine, "host.command_nanoseconds=1e9");
   Trace clears;
   clears.width = clears.height = 4;
@@ -298,7 +301,7 @@ TEST(Simulate, ATimeThatCannotBeCountedIsAUsersError) {
   clears.commands.resize(18'000);
   EXPECT_EQ(error_of([&] { expect_countable_time(clears, machine); }), "no error");
 
-  machine = machine::load("geforce4-ti4400");
+  machine = machine::load(machine::kGeForce4);
   machine::set(machine, "host.uncached_read_nanoseconds=1e6");
   machine::set(machine, "numbers.frame=float32");
   Trace pixels;
@@ -313,7 +316,7 @@ TEST(Simulate, ATimeThatCannotBeCountedIsAUsersError) {
 }
 
 TEST(Simulate, BuffersThatTheRowsSpreadBeyondAllAddressesAreAUsersError) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   for (const char* value : {"memory.row_bytes=65536", "memory.banks=64", "memory.channels=16"})
     machine::set(machine, value);
   Trace trace;
@@ -330,7 +333,7 @@ TEST(Simulate, BuffersThatTheRowsSpreadBeyondAllAddressesAreAUsersError) {
 
 // What the host does is just countable, and the clears are not.
 TEST(Simulate, ARunEndsWhereItsTimeCannotBeCounted) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine::set(machine, "host.command_nanoseconds=1e9");
   machine::set(machine, "clock.core_megahertz=1");
   Trace clears;
@@ -343,7 +346,7 @@ TEST(Simulate, ARunEndsWhereItsTimeCannotBeCounted) {
 
 // SystemC counts the femtoseconds of all runs of a process in 64 bits.
 TEST(Simulate, RunsThatTakeMoreThanFiveHoursTogetherAreAsEachAlone) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   const RandomTrace made = simple_trace(1000);
   const Result alone = simulate(made.trace, made.work, machine);
   Machine slow_host = machine;
@@ -361,7 +364,7 @@ TEST(Simulate, RunsThatTakeMoreThanFiveHoursTogetherAreAsEachAlone) {
 TEST(Simulate, ProgressGrowsToOne) {
   const RandomTrace made = simple_trace(10000);
   std::vector<double> seen;
-  simulate(made.trace, made.work, machine::load("geforce4-ti4400"), Scheduler::skip_ahead,
+  simulate(made.trace, made.work, machine::load(machine::kGeForce4), Scheduler::skip_ahead,
            [&](double done) { seen.push_back(done); });
   EXPECT_GE(seen.size(), 3u);
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
@@ -436,7 +439,7 @@ TEST(Simulate, SurfacesTexturesAndBuffersLieApart) {
   }
   trace.buffers.resize(4, {MemoryPlace::video, std::vector<std::byte>(70000)});
   trace.buffers[1].place = trace.buffers[3].place = MemoryPlace::agp;
-  const MemoryLayout layout = lay_out(trace, machine::load("geforce4-ti4400"));
+  const MemoryLayout layout = lay_out(trace, machine::load(machine::kGeForce4));
   using Part = std::pair<std::uint64_t, std::uint64_t>;  // address, bytes
   std::vector<Part> video{{layout.color_address, std::uint64_t{layout.color.bytes()} * 3},
                           {layout.depth_address, layout.depth.bytes()}};
@@ -458,6 +461,63 @@ TEST(Simulate, ADepthBufferOf16BitsIsHalfAsLarge) {
   EXPECT_EQ(lay_out(trace, machine).depth.bytes(), 64u * 64 * 4);
   machine.numbers.depth = DepthFormat::z16;
   EXPECT_EQ(lay_out(trace, machine).depth.bytes(), 64u * 64 * 2);
+}
+
+// What the depth cache holds is of the depths before the clear, and need not be written.
+TEST(Simulate, AClearEmptiesTheDepthCache) {
+  Machine machine = machine::load(machine::kGeForce4);
+  machine::assign(machine, "depth.cache_lines=1024");
+  RandomTrace made = simple_trace(200);
+  const Command clear = made.trace.commands[0], draw = made.trace.commands[1];
+  const Result once = simulate(made.trace, made.work, machine);
+  made.trace.commands = {clear, draw, clear, draw};
+  made.work.push_back(made.work[0]);
+  made.work[1].command = 3;
+  const Result twice = simulate(made.trace, made.work, machine);
+  EXPECT_GT(statistic(once, "depth", "misses"), 0u);
+  EXPECT_EQ(statistic(twice, "depth", "misses"), 2 * statistic(once, "depth", "misses"));
+  EXPECT_EQ(statistic(twice, "depth", "write_backs"), statistic(once, "depth", "write_backs"));
+}
+
+// The cache numbers the lines of a draw's texture: those of another one are no hits.
+TEST(Simulate, EachDrawReadsItsTextureAnew) {
+  Machine machine = machine::load(machine::kGeForce4);
+  machine::assign(machine, "texture.cache_lines=4096");
+  RandomTrace made = simple_trace(200);
+  const Result once = simulate(made.trace, made.work, machine);
+  made.trace.textures.push_back(made.trace.textures[0]);
+  Draw other = std::get<Draw>(made.trace.commands[1]);
+  other.texture = 1;
+  made.trace.commands.emplace_back(other);
+  made.work.push_back(made.work[0]);
+  made.work[1].command = 2;
+  const Result twice = simulate(made.trace, made.work, machine);
+  EXPECT_EQ(statistic(twice, "texture", "misses"), 2 * statistic(once, "texture", "misses"));
+}
+
+TEST(Simulate, ADrawKnowsWhereItsIndicesAndTexelsLie) {
+  RandomTrace made = simple_trace(2);
+  made.trace.surfaces = 2;
+  Draw& draw = std::get<Draw>(made.trace.commands[1]);
+  draw.first_index = 30;
+  const Machine machine = machine::load(machine::kGeForce4);
+  const MemoryLayout layout = lay_out(made.trace, machine);
+  const auto job = [&] { return prepare_draws(made.trace, machine, layout).jobs[0]; };
+  EXPECT_EQ(job().vertex_address, layout.buffers[0]);
+  EXPECT_EQ(job().index_address, layout.buffers[1] + 60);
+  EXPECT_EQ(job().texture_address, layout.textures[0]);
+  draw.source = 2;
+  EXPECT_EQ(job().texture_address, layout.color_address + 2 * layout.color.bytes());
+}
+
+TEST(Simulate, ACycleOfTheBusIsTheCoresThatBeginsWithItOrNext) {
+  Machine machine;
+  machine.clock.core_megahertz = 100;
+  machine.clock.bus_megahertz = 50;
+  EXPECT_EQ(SimulatedMachine(machine, Scheduler::skip_ahead).core_cycle(7), 14u);
+  machine.clock.bus_megahertz = 40;
+  EXPECT_EQ(SimulatedMachine(machine, Scheduler::skip_ahead).core_cycle(3), 8u);
+  EXPECT_EQ(SimulatedMachine(machine, Scheduler::skip_ahead).core_cycle(0), 0u);
 }
 
 }  // namespace

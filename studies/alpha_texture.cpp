@@ -164,7 +164,7 @@ std::vector<TextureRow> texture_rows(const traces::Scene& scene, std::span<const
 }
 
 void study_alpha_texture(Findings& findings, const Progress& progress) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   findings.report().heading("The size of the alpha texture: Eq. 15 and 16");
   std::vector<Shapes> all;
   Plot repeated = relative_plot("Repeated texels", "neighbours that are the same, percent");

@@ -34,7 +34,7 @@ TEST(AlphaTextureStudy, LengthsDecideTheCircularCutoff) {
       "eye = [0, 13, 42]\ntarget = [0, 0, 6]\n[splatting]\nalgorithm = \"ewa-per-pixel\"\n",
       "plane.toml");
   const int lengths[] = {27, 438, 876};
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const auto circle = texture_rows(scene, lengths, machine);
   scene.splatting.circular_cutoff = false;
   const auto square = texture_rows(scene, lengths, machine);

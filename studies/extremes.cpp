@@ -12,21 +12,13 @@
 namespace splatscope::studies {
 namespace {
 
+using kernels::plain_view;
 using kernels::QuadOutput;
 using kernels::Surfel;
 using kernels::SurfelRanges;
 using kernels::View;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-bool is_finite(const QuadOutput& quad) {
-  for (const kernels::CornerOutput& corner : quad) {
-    for (int i = 0; i < 4; ++i) {
-      if (!std::isfinite(corner.position[i]) || !std::isfinite(corner.diffuse[i])) return false;
-    }
-  }
-  return true;
-}
 
 double relative(double value, double exact) {
   const double error = std::abs(value / exact - 1);
@@ -94,13 +86,6 @@ std::vector<double> powers(double first, double last, double factor) {
   for (double x = first; up ? x < last * 1.001 : x > last * 0.999; x = up ? x * factor : x / factor)
     values.push_back(x);
   return values;
-}
-
-// Camera space is object space: exact numbers stay exact.
-View plain_view() {
-  View view = kernels::test_view();
-  view.object_to_camera = glm::dmat4(1);
-  return view;
 }
 
 View usual_view(double) {

@@ -29,12 +29,10 @@ std::string text_of_special_inputs() {
     for (const auto& [name, value] : values) {
       kernels::Surfel surfel{{0.1, 0.2, 4}, {0.02, 0, 0}, {0, 0.02, 0}, 1, 1, {1, 1, 1}};
       place(surfel) = value;
-      kernels::View view = kernels::test_view();
-      view.object_to_camera = glm::dmat4(1);
       text += fmt::format("{:<10} {:<9}", input, name);
       for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
-        const auto quad = kernels::run_quads(kernels::ewa_program("paper"), arithmetic, view, 0.0,
-                                             std::vector<kernels::Surfel>{surfel})[0];
+        const auto quad = kernels::run_quads(kernels::ewa_program("paper"), arithmetic, kernels::plain_view(),
+                                             0.0, std::vector<kernels::Surfel>{surfel})[0];
         bool position = true, color = true;
         for (const auto& corner : quad) {
           for (int i = 0; i < 4; ++i) {

@@ -58,7 +58,7 @@ TEST(FidelityStudy, AnEstimateHasNoEventHash) {
       "[surfels]\ngenerator = \"plane\"\ncolumns = 8\nrows = 8\n[frame]\nwidth = 32\n"
       "height = 32\n[splatting]\nalgorithm = \"no-ewa\"\n",
       "plane");
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Trace trace = traces::record(scene, machine.numbers).trace;
   for (const Fidelity fidelity :
        {Fidelity::throughput, Fidelity::sampled, Fidelity::cycle, Fidelity::referee}) {
@@ -83,7 +83,7 @@ TEST(FidelityStudy, SampledIsJudgedByEverySeed) {
 
 // Fig. 3 is a depth image: its frames write no colour.
 TEST(FidelityStudy, FiguresWithScenesOfTheirOwnAreDrawn) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   std::vector<std::string> names;
   for (const FidelityFrame& frame : figure_frames()) {
     names.push_back(frame.scene);

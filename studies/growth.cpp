@@ -93,7 +93,7 @@ double log_log_slope(const std::vector<double>& x, const std::vector<double>& y)
 }
 
 std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& progress) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   double all = 0, done = 0;
   for (const int side : sides) all += side * side;
   row_of(kWarmUpSide, machine);

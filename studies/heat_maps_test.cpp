@@ -20,7 +20,7 @@ double sum_of(const HeatMap& map) {
 // A sum is equal to the counter that results.json has; the frame's size is no multiple of a tile's nor a
 // quad's.
 TEST(HeatMaps, SumsAreTheCounters) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   for (const char* algorithm : {"\"ewa-per-surfel\"", "\"ewa-per-pixel\""}) {
     const traces::Scene scene = traces::parse_scene(std::string(kScene) + algorithm + "\n", "small.toml");
     const Trace trace = traces::record(scene, machine.numbers).trace;

@@ -18,7 +18,6 @@
 namespace splatscope::studies {
 namespace {
 
-constexpr std::string_view kMachine = "geforce4-ti4400";
 constexpr std::string_view kModels[] = {"salamander", "chameleon", "wasp", "fiesta"};
 constexpr int kBlockSurfels[] = {16, 64, 256, 1024};
 constexpr double kDistances[] = {1, 2, 4, 8};
@@ -26,7 +25,7 @@ constexpr double kDistances[] = {1, 2, 4, 8};
 traces::Scene scene_of(std::string_view model) {
   traces::Scene scene = traces::parse_scene(
       fmt::format("surfels.generator = \"{}\"\nhierarchy.culling = \"blocks\"\n", model), std::string(model));
-  scene.splatting.video_megabytes = free_video_memory(kMachine);
+  scene.splatting.video_megabytes = free_video_memory(machine::kGeForce4);
   return scene;
 }
 
@@ -265,7 +264,7 @@ std::vector<ProgressiveRow> progressive_rows(traces::Scene scene, const Machine&
 
 void study_hierarchy(Findings& findings, const Progress& progress) {
   findings.report().heading("Blocks and levels of the LDC tree: section 6.2");
-  const Machine machine = machine::load(std::string(kMachine));
+  const Machine machine = machine::load(machine::kGeForce4);
   study_culling(findings, machine, part(progress, 0, 0.6));
   study_levels(findings, machine, part(progress, 0.6, 0.9));
   study_progressive(findings, machine);

@@ -15,7 +15,7 @@ traces::Scene small_sphere() {
 }
 
 TEST(Hierarchy, CullsPartOfWhatFacesAwayAndGainsByIt) {
-  const CullingRow row = culling_row(small_sphere(), machine::load("geforce4-ti4400"));
+  const CullingRow row = culling_row(small_sphere(), machine::load(machine::kGeForce4));
   EXPECT_EQ(4000u, row.surfels);
   EXPECT_EQ(0u, row.could_go.outside);
   EXPECT_EQ(0u, row.outside);
@@ -33,7 +33,7 @@ TEST(Hierarchy, ACoarseLevelIsNearerToTheReferenceFromAfar) {
       "surfels = { generator = \"salamander\", count = 4000 }\nframe = { width = 80, height = 80 }\n"
       "hierarchy.block_surfels = 16\n",
       "salamander.toml");
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const LevelRow near = level_row(scene, 1, machine), far = level_row(scene, 8, machine);
   EXPECT_EQ(near.surfels, near.surfels_by_level.front());
   EXPECT_EQ(near.psnr_finest, near.psnr);
@@ -43,7 +43,7 @@ TEST(Hierarchy, ACoarseLevelIsNearerToTheReferenceFromAfar) {
 }
 
 TEST(Hierarchy, RefinesFrameByFrame) {
-  const auto rows = progressive_rows(small_sphere(), machine::load("geforce4-ti4400"));
+  const auto rows = progressive_rows(small_sphere(), machine::load(machine::kGeForce4));
   ASSERT_GT(rows.size(), 3u);
   for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_GT(rows[i].surfels, rows[i - 1].surfels);
   EXPECT_TRUE(std::isinf(rows.back().psnr));

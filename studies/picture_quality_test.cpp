@@ -18,7 +18,7 @@ QualityRow small_sphere(std::string_view splatting) {
       "[capture]\nviews = 16\nframe_size = 160\n[splatting]\n" +
           std::string(splatting),
       "sphere.toml");
-  return quality_of("sphere", scene, machine::load("geforce4-ti4400"));
+  return quality_of("sphere", scene, machine::load(machine::kGeForce4));
 }
 
 TEST(PictureQuality, TheWeightsAndTheEdgesCostWhatEightBitsDoNot) {
@@ -57,7 +57,7 @@ traces::Scene dark_surface() {
 // So dark, and of so many splats and each of so little weight, that they round to nothing.
 TEST(PictureQuality, NoDarkPixelIsAHole) {
   const traces::Scene scene = dark_surface();
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Trace trace = traces::record(scene, machine.numbers).trace;
   const FrameRun run = run_frame(trace, machine, Fidelity::functional);
   const Comparison c = compare(run.rendered.frame, trace, machine, screen_space_reference(scene));
@@ -68,7 +68,7 @@ TEST(PictureQuality, NoDarkPixelIsAHole) {
 // Weights that the vertices' 8-bit colours do not hold: the splats are there all the same.
 TEST(PictureQuality, NoPixelOfFaintSplatsIsAHole) {
   const traces::Scene scene = dark_surface();
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Trace trace = traces::record(scene, traces::uniform_weights(scene.surfels.size(), 0.001)).trace;
   const Comparison c = compare(draw_frame(trace, machine), trace, machine, screen_space_reference(scene));
   EXPECT_EQ(c.holes, 0u);

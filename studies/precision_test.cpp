@@ -57,8 +57,10 @@ TEST(Precision, many_small_splats_vanish_in_eight_bits) {
     EXPECT_LT(std::abs(bias("unorm16, nearest", count)), 0.5) << count;
     EXPECT_LT(std::abs(bias("float32", count)), 0.5) << count;
   }
-  for (const OverlapRow& row : rows)
-    if (!row.frame.starts_with("unorm8")) EXPECT_EQ(row.saturated, 0) << row.frame;
+  for (const OverlapRow& row : rows) {
+    if (row.frame.starts_with("unorm8")) continue;
+    EXPECT_EQ(row.saturated, 0) << row.frame;
+  }
 }
 
 TEST(Precision, a_depth_offset_is_for_curved_surfaces) {

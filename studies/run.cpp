@@ -106,8 +106,8 @@ int slots_of(const ShaderText& program) {
 }
 
 Rate rate_of(const sim::Result& timing) {
-  const sim::UnitBooks& busiest = timing.busiest();
-  return {timing.frames_per_second(), busiest.name, timing.share(busiest.busy)};
+  const sim::Result::Bottleneck bottleneck = timing.bottleneck();
+  return {timing.frames_per_second(), bottleneck.unit, timing.share(bottleneck.busy)};
 }
 
 std::string text_of_rate(const Rate& rate) {

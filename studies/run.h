@@ -20,7 +20,7 @@
 // The frames of a scene or a trace on one machine.
 namespace splatscope::studies {
 
-inline constexpr std::string_view kBothMachines[] = {"geforce4-ti4400", "radeon-8500"};
+inline constexpr std::string_view kBothMachines[] = {machine::kGeForce4, machine::kRadeon8500};
 
 enum class Fidelity { functional, throughput, sampled, cycle, referee };
 

@@ -27,7 +27,9 @@ sim::LogWindow window_of(const std::string& text, const char* option) {
                last = cycle_of(view.substr(colon + 1), sim::kNever);
     if (first && last && *first <= *last) return {*first, *last};
   }
-  throw UserError(option, 0, fmt::format("\"{}\", expected FIRST:LAST, two core cycles", text));
+  throw UserError(
+      option, 0,
+      fmt::format("\"{}\", expected FIRST:LAST, two core cycles, the first not after the last", text));
 }
 
 void check(const ObserveOptions& options) {

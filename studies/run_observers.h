@@ -24,6 +24,8 @@ struct ObserveOptions {
   sim::LogWindow pipeline_window;         // the same of it
   std::string counters;                   // file for a table (CSV); empty: none
   std::uint64_t counters_every = 10'000;  // core cycles a row
+
+  bool asks_for_cycles() const { return !timeline.empty() || !pipeline.empty() || !counters.empty(); }
 };
 
 // Throws UserError where a file cannot be made: what RunObservers would say only once there is a trace.

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
 #include "model/testing/error_of.h"
+#include "model/testing/oracle.h"
 
 namespace splatscope::studies {
 namespace {
@@ -172,16 +172,16 @@ TEST(ShaderBatch, NanCountsAsZeroInAPixelProgram) {
 }
 
 TEST(ShaderBatch, TheVectorsOfTheNv20) {
-  const json oracle = json::parse(std::ifstream(SPLATSCOPE_SOURCE "/tests/oracle/vertex_programs.json"));
+  const json vectors = oracle("vertex_programs.json");
   std::stringstream cases, results;
-  for (const json& test : oracle["cases"])
+  for (const json& test : vectors["cases"])
     cases << json{{"id", test["id"]},
                   {"tokens", test["tokens"]},
                   {"constants", test["constants"]},
                   {"inputs", test["inputs"]}}
           << '\n';
   run_shader_batch(cases, "cases", Arithmetic::nv20, results);
-  for (const json& test : oracle["cases"]) {
+  for (const json& test : vectors["cases"]) {
     std::string line;
     ASSERT_TRUE(std::getline(results, line));
     EXPECT_EQ(json::parse(line)["outputs"][test["output"].get<std::string>()], test["nv20"]) << test["id"];

@@ -12,7 +12,7 @@
 #include "model/pixel/pixel_program.h"
 #include "model/vertex/vertex_program.h"
 
-// Registers that a user gives a program, as JSON (docs: COMMANDS, `shader run`).
+// Registers that a user gives a program, as JSON (docs/shaders.md, Batches).
 namespace splatscope::studies {
 
 // Text that is no JSON object, or one too long or too deep to look into.

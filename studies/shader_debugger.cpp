@@ -43,7 +43,7 @@ std::string text_of(const Vec4& value) {
 int number_of(const std::string& text) {
   const auto number = traces::number_of<int>(text);
   if (!number || *number < 1)
-    throw std::invalid_argument(fmt::format("'{}' is no number, expected 1 or more", text));
+    throw std::invalid_argument(fmt::format("'{}', expected a whole number from 1 on", text));
   return *number;
 }
 
@@ -212,7 +212,7 @@ bool ShaderDebugger::obey(std::string_view command, const std::vector<std::strin
     for (const std::string& name : arguments)
       if (!written_.contains(name))
         throw std::invalid_argument(
-            fmt::format("the program writes no {}, expected one of its registers", name));
+            fmt::format("the program writes no {}, expected {}", name, fmt::join(written_, ", ")));
   };
   if (is("step")) {
     int left = arguments.empty() ? 1 : number_of(arguments[0]);

@@ -98,10 +98,9 @@ TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
   const auto error_of = [](const std::string& commands) {
     return splatscope::error_of([&] { transcript(kProgram, commands); });
   };
-  EXPECT_EQ(error_of("step\nprint r7\n"),
-            "commands:2: the program writes no r7, expected one of its registers");
+  EXPECT_EQ(error_of("step\nprint r7\n"), "commands:2: the program writes no r7, expected oPos, r0");
   EXPECT_EQ(error_of("jump\n").substr(0, 32), "commands:1: 'jump' is no command");
-  EXPECT_EQ(error_of("step x\n"), "commands:1: 'x' is no number, expected 1 or more");
+  EXPECT_EQ(error_of("step x\n"), "commands:1: 'x', expected a whole number from 1 on");
 }
 
 }  // namespace

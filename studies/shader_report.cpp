@@ -11,7 +11,7 @@
 #include "model/isa/tokens.h"
 #include "model/machine/machine.h"
 #include "sim/draw_jobs.h"
-#include "sim/units/vertex/throughput.h"
+#include "sim/units/vertex/vertex_clocks.h"
 
 namespace splatscope::studies {
 namespace {
@@ -56,7 +56,7 @@ std::string describe_shader(const isa::Program& program) {
     text += fmt::format(" {}", program.instructions[place].line);
   text += '\n';
   for (const std::string_view name : machine::built_in_names()) {
-    const Machine machine = machine::load(std::string(name));
+    const Machine machine = machine::load(name);
     text += program.version.kind == isa::ShaderKind::vertex
                 ? describe_on_machine(program, machine)
                 : fmt::format("{}: {} clocks a quad in the pixel unit\n", machine.name,

@@ -68,7 +68,7 @@ std::vector<ProgramRow> program_rows(const traces::Scene& scene, std::span<const
   std::vector<ProgramRow> rows;
   std::map<std::string_view, Drawing> drawings;
   for (const std::string_view name : kBothMachines) {
-    drawings.emplace(name, Drawing(scene, machine::load(std::string(name))));
+    drawings.emplace(name, Drawing(scene, machine::load(name)));
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     const kernels::SplatProgram& splats = kernels::ewa_program(names[i]);

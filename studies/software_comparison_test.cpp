@@ -25,7 +25,7 @@ TEST(SoftwareComparison, draws_every_resolution_by_every_renderer) {
     EXPECT_NEAR(2000, row.splats_per_second * row.seconds, 1e-6);
   }
   // The paper's finding: vertices bound the machine, whatever the pixels.
-  EXPECT_LT(growth(rows, "radeon-8500"), 0.5);
+  EXPECT_LT(growth(rows, machine::kRadeon8500), 0.5);
 }
 
 }  // namespace

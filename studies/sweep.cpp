@@ -165,9 +165,11 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
     const WorkStream stream = work_of(trace, same.machine, cache, sweep);
     const auto time_one = [&](std::size_t i) {
       const Machine timed = machine_of(machine, sweep.points[same.points[i]]);
-      const sim::Result timing = time_frame(trace, stream.work, timed, fidelity);
+      const sim::Result timing = time_frame(trace, stream.work, timed, fidelity, {.seed = options.seed});
       const Rate rate = rate_of(timing);
-      return json_text({{"results", timing_json(timing)}, {"rate", {rate.fps, rate.bottleneck, rate.share}}});
+      return json_text({{"results", timing_json(timing)},
+                        {"rate", {rate.fps, rate.bottleneck, rate.share}},
+                        {"cycles", {timing.cycles, timing.cycles_plus_minus}}});
     };
     const auto answers = in_processes(same.points.size(), std::thread::hardware_concurrency(), time_one,
                                       [&](std::size_t n) { tell(progress, done + n, sweep.points.size()); });
@@ -178,8 +180,11 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
       point.results = std::move(answer["results"]);
       const Json& rate = answer["rate"];
       point.rate = {rate[0].get<double>(), rate[1].get<std::string>(), rate[2].get<double>()};
+      point.cycles = answer["cycles"][0].get<std::uint64_t>();
+      point.cycles_plus_minus = answer["cycles"][1].get<double>();
     }
   }
+  if (fidelity == Fidelity::sampled) sweep.seed = options.seed;
   sweep.host_seconds = seconds_since(start);
   return sweep;
 }
@@ -189,6 +194,7 @@ nlohmann::ordered_json results_of(const Sweep& sweep, const Machine& machine, Fi
                   {"machine", machine.name},
                   {"set", settings_json(machine)},  // for all points
                   {"fidelity", name(fidelity)}};
+  if (sweep.seed) results["seed"] = *sweep.seed;
   results["points"] = Json::array();
   for (const SweepPoint& point : sweep.points) {
     Json entry = {{"set", Json::object()}};

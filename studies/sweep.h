@@ -27,6 +27,8 @@ struct SweepPoint {
   std::vector<std::pair<std::string, std::string>> settings;  // by parameter
   nlohmann::ordered_json results;  // as `frames`, `units` and `units_left_out` of a run's results
   Rate rate;                       // of all frames
+  std::uint64_t cycles = 0;        // the same, and half the width of its 95 % interval (`sampled`; else 0)
+  double cycles_plus_minus = 0;
 };
 
 struct Sweep {
@@ -36,12 +38,14 @@ struct Sweep {
   std::size_t from_cache = 0;                  // read from the cache instead
   std::vector<std::filesystem::path> damaged;  // of the cache: computed again
   std::vector<std::string> replaced;           // programs, a line for people on each
+  std::optional<std::uint64_t> seed;           // of the samples of `sampled`
   double host_seconds = 0;
 };
 
 struct SweepOptions {
   std::vector<std::string> programs = {};               // NAME=FILE, as replace_programs takes them
   std::optional<std::filesystem::path> cache = {};      // a folder for WorkCache
+  std::uint64_t seed = 1;                               // of the samples of `sampled`
   std::function<void(const Opened&)> before_work = {};  // called once the input is found right, with that
 };
 

@@ -25,7 +25,7 @@ std::string settings_text(const SweepPoint& point, std::size_t count) {
 std::string csv_of(const Sweep& sweep) {
   std::string text;
   for (const auto& [key, value] : sweep.points.front().settings) text += key + ",";
-  text += "frame,cycles,milliseconds,frames_per_second,bottleneck,bottleneck_busy_share\n";
+  text += "frame,cycles,cycles_plus_minus,milliseconds,frames_per_second,bottleneck,bottleneck_busy_share\n";
   for (const SweepPoint& point : sweep.points) {
     std::string settings;
     for (const auto& [key, value] : point.settings) settings += value + ",";
@@ -33,8 +33,11 @@ std::string csv_of(const Sweep& sweep) {
     const std::string busiest =  // of all frames together
         frames.size() == 1 ? fmt::format("{},{}", point.rate.bottleneck, point.rate.share) : ",";
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      text += fmt::format("{}{},{},{},{},{}\n", settings, i, frames[i]["cycles"].get<std::uint64_t>(),
-                          frames[i]["milliseconds"].get<double>(),
+      const std::string plus_minus = frames[i].contains("cycles_plus_minus")
+                                         ? fmt::format("{}", frames[i]["cycles_plus_minus"].get<double>())
+                                         : "";
+      text += fmt::format("{}{},{},{},{},{},{}\n", settings, i, frames[i]["cycles"].get<std::uint64_t>(),
+                          plus_minus, frames[i]["milliseconds"].get<double>(),
                           frames[i]["frames_per_second"].get<double>(), busiest);
     }
   }
@@ -74,9 +77,9 @@ Report report_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity) 
   for (const SweepPoint& point : sweep.points) {
     std::vector<std::string>& row = rows.emplace_back();
     for (const auto& [key, value] : point.settings) row.push_back(value);
-    std::uint64_t cycles = 0;
-    for (const auto& frame : point.results["frames"]) cycles += frame["cycles"].get<std::uint64_t>();
-    row.push_back(fmt::format("{}", cycles));
+    row.push_back(
+        fmt::format("{}{}", point.cycles,
+                    point.cycles_plus_minus > 0 ? fmt::format(" ± {:.0f}", point.cycles_plus_minus) : ""));
     row.push_back(fmt::format("{:.2f}", point.rate.fps));
     row.push_back(text_of_bottleneck(point.rate));
   }

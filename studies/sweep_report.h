@@ -10,8 +10,9 @@
 // What a sweep of one parameter or more found, for people and spreadsheets.
 namespace splatscope::studies {
 
-// As comma-separated values: a line for each frame of each machine with what was swept, cycles, milliseconds,
-// frames a second, and, of all frames, the unit that was busy for the largest share, and that share.
+// As comma-separated values: a line for each frame of each machine with what was swept, cycles, half the
+// width of their 95 % interval (empty but for `sampled`), milliseconds, frames a second, and, of a run of one
+// frame, the unit that was busy for the largest share, and that share.
 std::string csv_of(const Sweep& sweep);
 
 // The rates of all frames together over the last parameter, a curve for each combination of the others.

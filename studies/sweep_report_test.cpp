@@ -17,6 +17,7 @@ SweepPoint point(std::vector<std::pair<std::string, std::string>> settings, cons
     all += count;
   }
   out.rate = {static_cast<double>(cycles.size()) * 1e6 / all, "vertex0", 0.5};
+  out.cycles = static_cast<std::uint64_t>(all);
   return out;
 }
 
@@ -30,21 +31,34 @@ Sweep two_by_two() {
 }
 
 TEST(SweepReport, TheTableHasALineForEachFrameOfEachMachine) {
-  EXPECT_EQ(csv_of(two_by_two()),
-            "vertex.units,memory.channels,frame,cycles,milliseconds,frames_per_second,bottleneck,"
-            "bottleneck_busy_share\n"
-            "1,4,0,1000,1,1000,,\n"
-            "1,4,1,3000,3,333.3333333333333,,\n"
-            "1,2,0,2000,2,500,,\n"
-            "1,2,1,6000,6,166.66666666666666,,\n"
-            "2,4,0,500,0.5,2000,,\n"
-            "2,4,1,500,0.5,2000,,\n"
-            "2,2,0,1000,1,1000,,\n"
-            "2,2,1,1000,1,1000,,\n");
+  EXPECT_EQ(
+      csv_of(two_by_two()),
+      "vertex.units,memory.channels,frame,cycles,cycles_plus_minus,milliseconds,frames_per_second,bottleneck,"
+      "bottleneck_busy_share\n"
+      "1,4,0,1000,,1,1000,,\n"
+      "1,4,1,3000,,3,333.3333333333333,,\n"
+      "1,2,0,2000,,2,500,,\n"
+      "1,2,1,6000,,6,166.66666666666666,,\n"
+      "2,4,0,500,,0.5,2000,,\n"
+      "2,4,1,500,,0.5,2000,,\n"
+      "2,2,0,1000,,1,1000,,\n"
+      "2,2,1,1000,,1,1000,,\n");
   Sweep one_frame = two_by_two();
   one_frame.points.resize(1);
   one_frame.points[0].results["frames"].erase(1);
-  EXPECT_TRUE(csv_of(one_frame).ends_with("\n1,4,0,1000,1,1000,vertex0,0.5\n")) << csv_of(one_frame);
+  EXPECT_TRUE(csv_of(one_frame).ends_with("\n1,4,0,1000,,1,1000,vertex0,0.5\n")) << csv_of(one_frame);
+}
+
+TEST(SweepReport, AnIntervalStandsBesideItsCycles) {
+  Sweep sampled = two_by_two();
+  sampled.points.resize(1);
+  sampled.points[0].results["frames"].erase(1);
+  sampled.points[0].results["frames"][0]["cycles_plus_minus"] = 12.5;
+  sampled.points[0].cycles = 1000;
+  sampled.points[0].cycles_plus_minus = 12.5;
+  EXPECT_TRUE(csv_of(sampled).ends_with("\n1,4,0,1000,12.5,1,1000,vertex0,0.5\n")) << csv_of(sampled);
+  const std::string html = report_of(sampled, machine::load(machine::kGeForce4), Fidelity::sampled).html();
+  EXPECT_NE(html.find("1000 ± 12"), std::string::npos);
 }
 
 TEST(SweepReport, ACurveForEachCombinationOverTheLastParameterInItsOrder) {
@@ -70,7 +84,7 @@ TEST(SweepReport, NoCurveWhereTheyWouldBeTooManyOrValuesAreNoNumbers) {
 }
 
 TEST(SweepReport, ThePageAddsTheFramesOfAMachineUp) {
-  const std::string html = report_of(two_by_two(), machine::load("geforce4-ti4400"), Fidelity::cycle).html();
+  const std::string html = report_of(two_by_two(), machine::load(machine::kGeForce4), Fidelity::cycle).html();
   EXPECT_NE(html.find("8000"), std::string::npos);
   EXPECT_NE(html.find("vertex0 (50 % busy)"), std::string::npos);
   EXPECT_NE(html.find("image/svg+xml"), std::string::npos);
@@ -79,7 +93,7 @@ TEST(SweepReport, ThePageAddsTheFramesOfAMachineUp) {
 TEST(SweepReport, ThePageDoesWithoutAPlotter) {
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", "", 1);
-  const std::string html = report_of(two_by_two(), machine::load("geforce4-ti4400"), Fidelity::cycle).html();
+  const std::string html = report_of(two_by_two(), machine::load(machine::kGeForce4), Fidelity::cycle).html();
   ::setenv("PATH", path.c_str(), 1);
   EXPECT_NE(html.find("No curves of "), std::string::npos);
   EXPECT_NE(html.find("gnuplot failed"), std::string::npos);

@@ -42,7 +42,7 @@ class SweepFiles : public ::testing::Test {
 
   ScratchFolder folder;
   std::filesystem::path file = folder / "plane.trace";
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   Trace trace;
 };
 
@@ -136,7 +136,7 @@ TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
 
 // JSON holds no infinity.
 TEST(TimingJson, AFrameOfNoTimeHasNoRate) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine::set(machine, "host.command_nanoseconds=0");
   Trace trace;
   trace.width = trace.height = 4;

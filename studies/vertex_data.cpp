@@ -127,7 +127,7 @@ std::vector<VertexDataRow> vertex_data_rows(const traces::Scene& scene, const Pr
   constexpr double kRuns = 2 * std::size(kBothMachines) * std::size(kPairs);
   double runs = 0;
   for (const std::string_view name : kBothMachines) {
-    const Machine machine = machine::load(std::string(name));
+    const Machine machine = machine::load(name);
     // Captured without prefilter: the same whatever the programs.
     const traces::CapturedWeights weights = traces::capture_weights(scene, machine.numbers);
     std::optional<Frame> first;

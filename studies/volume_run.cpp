@@ -66,15 +66,18 @@ std::string run_volume(const traces::VolumeScene& scene, Precision precision,
                                             {"frame_processor_seconds", processor_seconds}}}};
   files.commit(results, 2);
   return fmt::format(
-      "{}: {} x {} x {} voxels, {} of them empty\n"
+      "{}: {}, {} of them empty\n"
       "{} splats in {} sheets, {} left out\n"
       "{}"
       "{} x {} pixels: {:.2f} s a frame, {:.2f} s of processor time; {:.2f} s before it to classify the "
       "voxels\n"
       "{}\n",
-      scene.name, size.x, size.y, size.z, empty, splats, picture.sheets, picture.left_out,
-      warning_of_none(splats, picture.left_out), picture.width, picture.height, frame_seconds,
-      processor_seconds, classify_seconds, (folder / "frame.png").string());
+      scene.name,
+      scene.samples.empty() ? fmt::format("{} x {} x {} voxels", size.x, size.y, size.z)
+                            : fmt::format("{} samples", scene.samples.size()),
+      empty, splats, picture.sheets, picture.left_out, warning_of_none(splats, picture.left_out),
+      picture.width, picture.height, frame_seconds, processor_seconds, classify_seconds,
+      (folder / "frame.png").string());
 }
 
 }  // namespace splatscope::studies

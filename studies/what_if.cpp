@@ -18,10 +18,14 @@ namespace {
 using traces::Algorithm;
 constexpr Algorithm kAlgorithms[] = {Algorithm::no_ewa, Algorithm::ewa_per_pixel, Algorithm::ewa_per_surfel};
 
+std::string counted(int number, std::string_view what) {
+  return fmt::format("{} {}{}", number, what, number > 1 ? "s" : "");
+}
+
 std::vector<Hardware> make_list() {
   std::vector<Hardware> list{{.name = "as it was", .cost = "-"}};
   for (const int units : {1, 3, 4, 6, 8}) {
-    list.push_back({.name = fmt::format("{} vertex unit{}", units, units > 1 ? "s" : ""),
+    list.push_back({.name = counted(units, "vertex unit"),
                     .cost = fmt::format("{:+} vertex units", units - 2),
                     .vertex_units = units});
   }
@@ -35,7 +39,7 @@ std::vector<Hardware> make_list() {
       {.name = "point sprites", .cost = "oPts; circles, no EWA", .geometry = Geometry::point_sprites});
   list.push_back({.name = "short programs", .cost = "nothing", .short_programs = true});
   for (const int units : {1, 3, 4, 6, 8}) {
-    list.push_back({.name = fmt::format("short, {} units", units),
+    list.push_back({.name = fmt::format("short, {}", counted(units, "unit")),
                     .cost = fmt::format("{:+} vertex units", units - 2),
                     .short_programs = true,
                     .vertex_units = units});
@@ -55,7 +59,7 @@ std::vector<Hardware> make_list() {
 }
 
 Machine machine_with(std::string_view name, const Hardware& hardware) {
-  Machine machine = machine::load(std::string(name));
+  Machine machine = machine::load(name);
   machine::set(machine, fmt::format("vertex.units={}", hardware.vertex_units));
   return with_frame(std::move(machine), hardware.frame);
 }

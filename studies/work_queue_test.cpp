@@ -54,7 +54,7 @@ Trace plane_of_several_draws(const Machine& machine) {
 
 // An estimate needs no more of the work than the samples that are recorded for it.
 TEST(RunFrame, ThroughputOfSamplesIsThatOfAllWork) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Trace trace = plane_of_several_draws(machine);
   const Rendered rendered = render(trace, render_options(machine));
   const sim::Result estimate = time_frame(trace, rendered.work, machine, Fidelity::throughput);
@@ -68,7 +68,7 @@ TEST(RunFrame, ThroughputOfSamplesIsThatOfAllWork) {
 
 // The function beside the time: the same picture, work and cycles as one after the other.
 TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
-  const Machine machine = machine::load("radeon-8500");
+  const Machine machine = machine::load(machine::kRadeon8500);
   const Trace trace = plane_of_several_draws(machine);
   const Rendered rendered = render(trace, render_options(machine));
   ASSERT_GT(rendered.work.size(), 2u);  // several draws, or nothing runs beside anything
@@ -84,7 +84,7 @@ TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
 
 // What is wrong with a trace is found by the thread of the function, and told by the one that waits.
 TEST(RunFrame, AnErrorOfTheFunctionIsThrown) {
-  const Machine machine = machine::load("radeon-8500");
+  const Machine machine = machine::load(machine::kRadeon8500);
   const traces::Scene scene = traces::parse_scene(
       "[surfels]\ngenerator = \"plane\"\ncolumns = 8\nrows = 8\n[frame]\nwidth = 32\nheight = 32\n"
       "[splatting]\nalgorithm = \"no-ewa\"\n",

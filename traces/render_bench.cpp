@@ -12,7 +12,7 @@ namespace {
 // Table 1's frame of 65,536 EWA surfels, from its trace in memory to the frame: recording is not timed. With
 // the whole work record, with the samples that an estimate needs, or with none; by the number of threads.
 void render_frame(benchmark::State& state, Record record_what) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   static const Recording recording = record(load_scene("checkerboard-ewa-per-surfel"), machine.numbers, {});
   const auto threads = static_cast<std::size_t>(state.range(0));
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);

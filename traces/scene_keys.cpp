@@ -209,7 +209,8 @@ std::string expectation(const SceneKey& key) {
           },
           [](const TransferValue&) {
             return std::string(
-                "an array of { value, opacity, color }, values rising, opacity and color from 0 to 1");
+                "an array of { value, opacity, color }, values that do not fall (of two that are the same "
+                "the later begins a step), opacity and color from 0 to 1");
           },
           [](const PlacesValue& v) {
             return fmt::format("an array of rising numbers from {:g} to {:g}", v.min, v.max);

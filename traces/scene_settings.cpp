@@ -21,6 +21,8 @@ constexpr unsigned kFromPlane = 1, kFromModel = 2, kFromPoints = 4;
 struct Store {
   SceneSettings& settings;
   const toml::node& node;
+  const toml::node* looked_at = &node;  // an entry of `node`, or all of it
+  std::string place_in_node = "";       // "[3]"
 
   bool operator()(const RealValue& v) const {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
@@ -52,27 +54,31 @@ struct Store {
     v.store(settings, static_cast<int>(found - v.names.begin()));
     return true;
   }
-  bool operator()(const TransferValue& v) const {
+  bool operator()(const TransferValue& v) {
     const toml::array* points = node.as_array();
     if (!points) return false;
     std::vector<kernels::TransferPoint>& place = v.place(settings);
     for (const toml::node& entry : *points) {
+      look_at(entry, place.size());
       const toml::table* point = entry.as_table();
       if (!point || point->size() != 3) return false;
       place.emplace_back();
       if (!number(*point, "value", -1e30, 1e30, place.back().value) ||
           !number(*point, "opacity", 0, 1, place.back().look.opacity) ||
-          !numbers(point->get("color"), 0, 1, place.back().look.color)) {
+          !numbers(point->get("color"), 0, 1, place.back().look.color) ||
+          !std::ranges::is_sorted(std::span(place).last(std::min<std::size_t>(2, place.size())), {},
+                                  &kernels::TransferPoint::value)) {
         return false;
       }
     }
-    return std::ranges::is_sorted(place, {}, &kernels::TransferPoint::value);
+    return true;
   }
-  bool operator()(const PlacesValue& v) const {
+  bool operator()(const PlacesValue& v) {
     const toml::array* places = node.as_array();
     if (!places) return false;
     std::vector<double>& out = v.place(settings);
     for (const toml::node& entry : *places) {
+      look_at(entry, out.size());
       const auto value = entry.is_number() ? entry.value<double>() : std::nullopt;
       if (!value || !(*value >= v.min && *value <= v.max)) return false;
       if (!out.empty() && !(*value > out.back())) return false;
@@ -83,6 +89,10 @@ struct Store {
   bool operator()(const VectorValue& v) const { return numbers(&node, v.min, v.max, v.place(settings)); }
 
  private:
+  void look_at(const toml::node& entry, std::size_t index) {
+    looked_at = &entry;
+    place_in_node = fmt::format("[{}]", index);
+  }
   static bool number(const toml::table& table, std::string_view name, double min, double max, double& out) {
     const toml::node* found = table.get(name);
     const auto value = found && found->is_number() ? found->value<double>() : std::nullopt;
@@ -150,10 +160,11 @@ void read_table(SceneSettings& settings, std::string_view name, const toml::tabl
       throw UserError(
           file, line(key),
           fmt::format("unknown key \"{}\" in [{}], expected one of: {}", key.str(), name, names_of(name)));
-    if (!std::visit(Store{settings, node}, declared->value))
-      throw UserError(
-          file, line(node),
-          fmt::format("{}.{} is {}, expected {}", name, key.str(), shown(node), expectation(*declared)));
+    Store store{settings, node};
+    if (!std::visit(store, declared->value))
+      throw UserError(file, line(*store.looked_at),
+                      fmt::format("{}.{}{} is {}, expected {}", name, key.str(), store.place_in_node,
+                                  shown(*store.looked_at), expectation(*declared)));
     settings.lines.emplace(fmt::format("{}.{}", name, key.str()), line(key));
   }
 }

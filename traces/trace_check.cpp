@@ -96,8 +96,11 @@ class Checker {
     } catch (const UserError& error) {
       fail(error.what(), "a program that loads");
     }
-    fail("the pixel program reads coordinates besides sampling, kills fragments or writes depth",
-         "one that samples stages at their own coordinates alone");
+    fail(
+        "the pixel program samples a stage at other than its own coordinates (in ps_1_4 `texld r1, t1` "
+        "samples "
+        "stage 1), computes with coordinates, kills fragments or writes depth",
+        "one that samples stages at their own coordinates alone");
   }
 
   const Loaded& program(std::string_view what, std::uint32_t index, isa::ShaderKind kind) const {
@@ -145,6 +148,7 @@ class Checker {
     if (draw.target != 0 && (draw.state.depth_test || draw.state.depth_write))
       fail("a draw into an off-screen surface tests or writes depth", "neither, as it has none");
     if (!draw.source) return;
+    if (trace_.surfaces == 0) fail("a draw samples an off-screen surface", "one in the trace");
     in_range("source surface", *draw.source, 1, trace_.surfaces);
     if (*draw.source == draw.target) fail("a draw samples the surface that it writes", "another one");
     if (draw.texture) fail("a draw samples a texture and a surface", "one of them");

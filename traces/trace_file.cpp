@@ -61,17 +61,9 @@ fb::Offset<stored::Present> pack(fb::FlatBufferBuilder& builder, const Present&)
   return stored::CreatePresent(builder);
 }
 
-constexpr stored::CommandBody kind(const Clear&) {
-  return stored::CommandBody::Clear;
-}
-constexpr stored::CommandBody kind(const Draw&) {
-  return stored::CommandBody::Draw;
-}
-constexpr stored::CommandBody kind(const NormalizeOnHost&) {
-  return stored::CommandBody::NormalizeOnHost;
-}
-constexpr stored::CommandBody kind(const Present&) {
-  return stored::CommandBody::Present;
+template <class Body>
+fb::Offset<stored::Command> stored_command(fb::FlatBufferBuilder& builder, fb::Offset<Body> body) {
+  return stored::CreateCommand(builder, stored::CommandBodyTraits<Body>::enum_value, body.Union());
 }
 
 void pack(fb::FlatBufferBuilder& builder, const Trace& trace) {
@@ -89,11 +81,8 @@ void pack(fb::FlatBufferBuilder& builder, const Trace& trace) {
         stored::CreateProgram(builder, builder.CreateString(p.name), builder.CreateString(p.text)));
   std::vector<fb::Offset<stored::Command>> commands;
   for (const Command& command : trace.commands)
-    commands.push_back(std::visit(
-        [&](const auto& body) {
-          return stored::CreateCommand(builder, kind(body), pack(builder, body).Union());
-        },
-        command));
+    commands.push_back(
+        std::visit([&](const auto& body) { return stored_command(builder, pack(builder, body)); }, command));
   const auto root =
       stored::CreateTrace(builder, kTraceVersion, trace.width, trace.height, builder.CreateVector(buffers),
                           builder.CreateVector(textures), builder.CreateVector(programs),
@@ -252,7 +241,8 @@ Trace trace_of_bytes(std::span<const std::uint8_t> bytes, std::string_view file)
   constexpr fb::uoffset_t kDepth = 8;
   fb::Verifier verifier(bytes.data(), bytes.size(), kDepth, static_cast<fb::uoffset_t>(bytes.size() / 8));
   if (!stored::VerifyTraceBuffer(verifier))
-    throw UserError(file, 0, "is damaged or cut short, expected a whole trace file");
+    throw UserError(file, 0,
+                    "is damaged, cut short or without a required field, expected a whole trace file");
   const stored::Trace& stored_trace = *stored::GetTrace(bytes.data());
   if (stored_trace.version() == 0 || stored_trace.version() > kTraceVersion)
     throw UserError(

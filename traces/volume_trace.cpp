@@ -15,6 +15,7 @@
 #include "kernels/voxel_ewa/programs.h"
 #include "model/error.h"
 #include "model/stop.h"
+#include "model/vertex/vertex_fetch.h"
 #include "traces/splat_trace.h"
 #include "traces/trace_file.h"
 #include "traces/volume_sheets.h"
@@ -246,24 +247,24 @@ class Recorder {
     draw.state.blend = true;
     draw.state.destination_factor = BlendFactor::one;
     std::uint32_t offset = 0;
-    const auto add = [&](int input, VertexFormat format, std::uint32_t bytes) {
+    const auto add = [&](int input, VertexFormat format) {
       draw.attributes.push_back(
           {static_cast<std::uint8_t>(input), format, static_cast<std::uint16_t>(offset)});
-      offset += bytes;
+      offset += vertex::size_of(format);
     };
     if (kind == kSharedVariance) {
-      add(kernels::kVoxelPositionInput, VertexFormat::short4, 8);
+      add(kernels::kVoxelPositionInput, VertexFormat::short4);
     } else {
-      add(kernels::kVoxelPositionInput, VertexFormat::float3, 12);
+      add(kernels::kVoxelPositionInput, VertexFormat::float3);
     }
-    add(kernels::kVoxelCornerInput, VertexFormat::short2, 4);
+    add(kernels::kVoxelCornerInput, VertexFormat::short2);
     if (settings_.float_colors) {
-      add(kernels::kVoxelColorInput, VertexFormat::float4, 16);
+      add(kernels::kVoxelColorInput, VertexFormat::float4);
     } else {
-      add(kernels::kVoxelColorInput, VertexFormat::d3dcolor, 4);
+      add(kernels::kVoxelColorInput, VertexFormat::d3dcolor);
     }
     if (kind == kOwnVariance) {
-      for (int row = 0; row < 3; ++row) add(kernels::kVoxelVarianceInput + row, VertexFormat::float3, 12);
+      for (int row = 0; row < 3; ++row) add(kernels::kVoxelVarianceInput + row, VertexFormat::float3);
     }
     draw.vertex_stride = offset;
     // On a grid positions are numbers of voxels; elsewhere the general program takes object units.

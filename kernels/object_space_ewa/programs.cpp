@@ -47,8 +47,7 @@ std::vector<Vec4> splat_constants(const View& view, double cutoff, double depth_
     c[static_cast<std::size_t>(row)] = vec4(m[0][row], m[1][row], m[2][row], m[3][row]);
   }
   const double near = view.near_plane;
-  const double far = view.far_plane;
-  const double depth = far / (far - near);  // clip z from 0 at the near plane to w at the far plane
+  const double depth = view.depth_scale();  // clip z from 0 at the near plane to w at the far plane
   const double radius = std::sqrt(2.0 * cutoff);
   c[3] = vec4(2.0 * view.eta / view.width, 2.0 * view.eta / view.height, near, 1.0);
   c[4] = vec4(depth, -near * depth, depth_offset, 0.5);

@@ -31,6 +31,16 @@ struct CornerOutput {
 };
 using QuadOutput = std::array<CornerOutput, 4>;  // in the order of kQuadCorners
 
+// Whether its positions and diffuse colours are.
+inline bool is_finite(const QuadOutput& quad) {
+  for (const CornerOutput& corner : quad) {
+    for (int i = 0; i < 4; ++i) {
+      if (!std::isfinite(corner.position[i]) || !std::isfinite(corner.diffuse[i])) return false;
+    }
+  }
+  return true;
+}
+
 inline constexpr double kCutoff = 1.0;  // c of Eq. 14
 
 inline isa::Program load_program(std::string_view file) {
@@ -136,6 +146,13 @@ inline View rounded(View view) {
 
 inline View test_view() {
   return rounded(look_at({0.3, -0.2, -4.0}, {0.1, 0.4, 1.0}, {0.1, 1.0, 0.05}, 60.0, 512, 512, 0.1, 1000.0));
+}
+
+// Its camera space is object space: exact numbers stay exact.
+inline View plain_view() {
+  View view = test_view();
+  view.object_to_camera = glm::dmat4(1);
+  return view;
 }
 
 // What a random surfel is drawn from; the logarithm of each range is uniform.

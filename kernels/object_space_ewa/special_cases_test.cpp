@@ -15,8 +15,8 @@
 namespace splatscope::kernels {
 namespace {
 
-// Camera space is object space.
-View plain_view() {
+// Camera space is object space, and numbers are exact.
+View exact_view() {
   View view;
   view.width = view.height = 512;
   view.eta = 512.0;
@@ -39,15 +39,6 @@ Surfel facing_eye(Surfel surfel) {
     std::swap(surfel.tangent_s, surfel.tangent_t);
   }
   return surfel;
-}
-
-bool finite(const QuadOutput& quad) {
-  for (const CornerOutput& corner : quad) {
-    for (int i = 0; i < 4; ++i) {
-      if (!std::isfinite(corner.position[i]) || !std::isfinite(corner.diffuse[i])) return false;
-    }
-  }
-  return true;
 }
 
 QuadOutput run_one(const SplatProgram& program, const View& view, const Surfel& surfel) {
@@ -95,7 +86,7 @@ TEST(AppendixA, printed_sign_is_wrong_where_p_is_0_and_b_negative) {
 // The plane is tilted about a diagonal of s and t, so S = T exactly; the sign of B by the direction of the
 // tilt.
 TEST_P(SpecialCases, p_is_0) {
-  const View view = plain_view();
+  const View view = exact_view();
   const double tilt = std::sqrt(0.375);
   for (const double direction : {-1.0, 1.0}) {
     const Surfel surfel = surfel_at({0, 0, 2}, 0.01 * glm::dvec3(0.75, 0.25, tilt),
@@ -111,12 +102,12 @@ TEST_P(SpecialCases, p_is_0) {
 
 // Every surfel of a plane that faces the camera, wherever it is: J is a multiple of I.
 TEST_P(SpecialCases, t_is_0) {
-  const View view = plain_view();
+  const View view = exact_view();
   for (const double x : {-0.5, 0.0, 0.3}) {
     for (const double y : {-0.4, 0.0, 0.6}) {
       const Surfel surfel = facing_eye(surfel_at({x, y, 2}, {0.01, 0, 0}, {0, 0.01, 0}));
       const QuadOutput quad = run_one(GetParam(), view, surfel);
-      ASSERT_TRUE(finite(quad));
+      ASSERT_TRUE(is_finite(quad));
       const glm::dmat2 axes = axes_of(view, surfel, quad);
       const double variance = 1.0 + 1.0 / (2.56 * 2.56);  // h is 2.56 pixels
       expect_near(axes * glm::transpose(axes), glm::dmat2(variance), 1e-5);
@@ -126,12 +117,12 @@ TEST_P(SpecialCases, t_is_0) {
 
 // The eye is in the plane of the surfel: nothing is to be seen of it.
 TEST_P(SpecialCases, d_is_0) {
-  const View view = plain_view();
+  const View view = exact_view();
   for (const glm::dvec3 across :
        {glm::dvec3(0.01, 0, 0), glm::dvec3(0, 0.01, 0), glm::dvec3(0.006, 0.008, 0)}) {
     for (const double along : {-0.01, 0.01}) {
       const QuadOutput quad = run_one(GetParam(), view, surfel_at({0, 0, 2}, across, {0, 0, along}));
-      ASSERT_TRUE(finite(quad));
+      ASSERT_TRUE(is_finite(quad));
       EXPECT_LT(quad[0].diffuse.w, 1e-4);
     }
   }
@@ -140,7 +131,7 @@ TEST_P(SpecialCases, d_is_0) {
 // The paper's program: infinitely long along the ray, one pixel's filter and its own across; as much of that
 // is drawn as stays half the depth away from the eye.
 TEST(SpecialCasesOfThePaper, d_is_0) {
-  const View view = plain_view();
+  const View view = exact_view();
   for (const bool swapped : {false, true}) {
     Surfel surfel = surfel_at({0, 0, 2}, {0.01, 0, 0}, {0, 0, 0.01});
     if (swapped) std::swap(surfel.tangent_s, surfel.tangent_t);
@@ -160,11 +151,12 @@ TEST(SpecialCasesOfThePaper, d_is_0) {
 
 // Each guard of the program, switched off by its constant.
 TEST(SpecialCasesOfThePaper, guards_act) {
-  const View view = plain_view();
+  const View view = exact_view();
   const SplatProgram& program = ewa_program("paper");
   const std::vector<Vec4> guarded = splat_constants(view, kCutoff, 0.0);
   const auto is_finite = [&](const Surfel& surfel, const std::vector<Vec4>& constants) {
-    return finite(run_quads(program, Arithmetic::ieee, constants, std::vector<Surfel>{surfel})[0]);
+    return kernels::is_finite(
+        run_quads(program, Arithmetic::ieee, constants, std::vector<Surfel>{surfel})[0]);
   };
   const auto without = [&](std::size_t index, std::size_t component) {
     std::vector<Vec4> constants = guarded;
@@ -204,9 +196,9 @@ class Hostile {
 
 void expect_finite(const SplatProgram& program, const std::vector<Surfel>& surfels) {
   for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
-    const auto quads = run_quads(program, arithmetic, plain_view(), 0.0, surfels);
+    const auto quads = run_quads(program, arithmetic, exact_view(), 0.0, surfels);
     for (std::size_t i = 0; i < surfels.size(); ++i) {
-      ASSERT_TRUE(finite(quads[i])) << "surfel " << i << ", o_z = " << surfels[i].position.z;
+      ASSERT_TRUE(is_finite(quads[i])) << "surfel " << i << ", o_z = " << surfels[i].position.z;
     }
   }
 }
@@ -238,7 +230,7 @@ TEST_P(SpecialCases, hostile_positions_and_sizes_stay_finite) {
       const double h = std::pow(10.0, -6.0 + 12.0 * hostile.uniform());
       surfel = surfel_at(hostile.vector(low, 6), h * s, h * glm::cross(normal, s));
       glm::dvec3& o = surfel.position;
-      o.z = std::max(std::abs(o.z), plain_view().near_plane);
+      o.z = std::max(std::abs(o.z), exact_view().near_plane);
       o = {std::clamp(o.x, -1000 * o.z, 1000 * o.z), std::clamp(o.y, -1000 * o.z, 1000 * o.z), o.z};
       surfel.sigma = std::pow(10.0, -3.0 + 6.0 * hostile.uniform());
     }
@@ -261,7 +253,7 @@ rc::Gen<double> fraction() {
 // twice what the exact filter does: a splat is larger than the frame only where the filter is larger than
 // half of it. Edge-on, too, and up to the size that the recorder draws.
 RC_GTEST_PROP(SpecialCasesOfThePaper, no_corner_comes_nearer_than_half_the_depth, ()) {
-  const View view = plain_view();
+  const View view = exact_view();
   const double depth = view.near_plane * std::pow(8000.0, std::abs(*fraction()));
   const glm::dvec3 o{depth * *fraction(), depth * *fraction(), depth};
   const double tilt = 0.5 * std::numbers::pi * *fraction(), turn = std::numbers::pi * *fraction();

@@ -19,11 +19,6 @@ namespace splatscope::kernels::HWY_NAMESPACE {
 
 constexpr std::size_t kSplatValues = offsetof(FastSplat, quad) / sizeof(float);
 
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-
 // Boxes of the pixels whose centres lie between low and high, a lane each.
 struct Boxes {
   HWY_ALIGN std::int32_t left[FastSurfels::kPadding], top[FastSurfels::kPadding],
@@ -106,18 +101,15 @@ HWY_INLINE Filter filter_of(const FastView& view, const V3& o, const V3& s, cons
 HWY_INLINE bool prepare_batch(const FastSurfels& surfels, const FastView& view, std::size_t i, Batch& batch) {
   const auto load = [&](FastSurfels::Component c)
                         HWY_ATTR { return hn::LoadU(F{}, surfels.values[c].data() + i); };
-  const auto direction = [&](V x, V y, V z) HWY_ATTR {
-    const auto row = [&](int r) HWY_ATTR {
-      return hn::Add(hn::Add(hn::Mul(set(view.rows[r][0]), x), hn::Mul(set(view.rows[r][1]), y)),
-                     hn::Mul(set(view.rows[r][2]), z));
-    };
-    return V3{row(0), row(1), row(2)};
-  };
-  const V3 turned = direction(load(FastSurfels::x), load(FastSurfels::y), load(FastSurfels::z));
-  const V3 o{hn::Add(turned.x, set(view.rows[0][3])), hn::Add(turned.y, set(view.rows[1][3])),
-             hn::Add(turned.z, set(view.rows[2][3]))};
-  const V3 s = direction(load(FastSurfels::sx), load(FastSurfels::sy), load(FastSurfels::sz));
-  const V3 t = direction(load(FastSurfels::tx), load(FastSurfels::ty), load(FastSurfels::tz));
+  const auto direction = [&](FastSurfels::Component x, FastSurfels::Component y, FastSurfels::Component z)
+                             HWY_ATTR {
+                               return turned(view, {load(x), load(y), load(z)});
+                             };
+  const V3 moved = direction(FastSurfels::x, FastSurfels::y, FastSurfels::z);
+  const V3 o{hn::Add(moved.x, set(view.rows[0][3])), hn::Add(moved.y, set(view.rows[1][3])),
+             hn::Add(moved.z, set(view.rows[2][3]))};
+  const V3 s = direction(FastSurfels::sx, FastSurfels::sy, FastSurfels::sz);
+  const V3 t = direction(FastSurfels::tx, FastSurfels::ty, FastSurfels::tz);
   const V3 normal = cross(s, t);
   const V plane = dot(normal, o);
   const V zero = hn::Zero(F{}), one = set(1.0f);

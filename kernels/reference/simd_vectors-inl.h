@@ -32,6 +32,18 @@ HWY_INLINE V set(float value) {
 HWY_INLINE V dot(const V3& a, const V3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
+HWY_INLINE V3 cross(const V3& a, const V3& b) {
+  const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, s), hn::Mul(q, r)); };
+  return {minor(a.y, a.z, b.y, b.z), minor(a.z, a.x, b.z, b.x), minor(a.x, a.y, b.x, b.y)};
+}
+// A direction of object space in camera space.
+HWY_INLINE V3 turned(const FastCamera& camera, const V3& a) {
+  const auto row = [&](int r) HWY_ATTR {
+    return hn::Add(hn::Add(hn::Mul(set(camera.rows[r][0]), a.x), hn::Mul(set(camera.rows[r][1]), a.y)),
+                   hn::Mul(set(camera.rows[r][2]), a.z));
+  };
+  return {row(0), row(1), row(2)};
+}
 HWY_INLINE V square(V a) {
   return hn::Mul(a, a);
 }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
@@ -11,6 +10,7 @@
 #include "model/error.h"
 #include "model/isa/validate.h"
 #include "model/testing/error_of.h"
+#include "model/testing/oracle.h"
 #include "model/testing/random_seed.h"
 
 namespace splatscope::isa {
@@ -30,8 +30,8 @@ Tokens tokens_of(const json& hex) {
 std::vector<json> cases_with_tokens() {
   std::vector<json> cases;
   for (const char* name : {"bytecode.json", "vertex_programs.json", "pixel_programs.json"}) {
-    const json oracle = json::parse(std::ifstream(std::string(SPLATSCOPE_SOURCE "/tests/oracle/") + name));
-    cases.insert(cases.end(), oracle["cases"].begin(), oracle["cases"].end());
+    const json vectors = oracle(name);
+    cases.insert(cases.end(), vectors["cases"].begin(), vectors["cases"].end());
   }
   return cases;
 }

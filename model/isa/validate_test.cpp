@@ -3,22 +3,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "model/error.h"
 #include "model/isa/tokens.h"
 #include "model/testing/error_of.h"
+#include "model/testing/oracle.h"
 
 namespace splatscope::isa {
 namespace {
 
 using nlohmann::json;
-
-json oracle(const std::string& name) {
-  return json::parse(std::ifstream(std::string(SPLATSCOPE_SOURCE "/tests/oracle/") + name));
-}
 
 std::string error_of(const std::string& text) {
   return splatscope::error_of([&] { load(text, "p"); });

@@ -38,8 +38,7 @@ struct BlendState {
 };
 
 // out = clamp(floor((2*(src*sf OP dst*df) + 255) / 510)): one rounding to nearest of the exact sum over 255,
-// with 8-bit factors where 1 - f is 255 - f (read off the screens of an NV2A; docs: NV20 arithmetic, frame
-// buffer and raster).
+// with 8-bit factors where 1 - f is 255 - f (read off the screens of an NV2A: tests/oracle/blend.json).
 Color8 blend_unorm8(const BlendState& state, Color8 source, Color8 destination);
 
 }  // namespace splatscope

@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "model/testing/oracle.h"
 
 namespace splatscope {
 namespace {
@@ -39,9 +40,9 @@ const std::map<std::string, BlendEquation> kEquations = {
 };
 
 TEST(Blend, MatchesTheScreensOfAnNv2a) {
-  const json oracle = json::parse(std::ifstream(SPLATSCOPE_SOURCE "/tests/oracle/blend.json"));
-  ASSERT_FALSE(oracle["cases"].empty());
-  for (const json& test : oracle["cases"]) {
+  const json vectors = oracle("blend.json");
+  ASSERT_FALSE(vectors["cases"].empty());
+  for (const json& test : vectors["cases"]) {
     const BlendState state{kFactors.at(test["sf"]), kFactors.at(test["df"]), kEquations.at(test["eq"]),
                            test["constant"].get<Color8>()};
     EXPECT_EQ(blend_unorm8(state, test["src"].get<Color8>(), test["dst"].get<Color8>()),

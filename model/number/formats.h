@@ -4,7 +4,7 @@
 
 namespace splatscope {
 
-// Arithmetic of the vertex unit: IEEE binary32, or what the NV20 does (docs: NV20 arithmetic).
+// Arithmetic of the vertex unit: IEEE binary32, or what the NV20 does (docs/nv20_arithmetic.md).
 enum class Arithmetic : std::uint8_t { ieee, nv20 };
 
 // Frame buffer, a channel: 8 bits, or binary32 (for proofs against a reference); and what no machine of 2002

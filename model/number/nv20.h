@@ -4,7 +4,7 @@
 #include <cstdint>
 
 // The vertex unit of the NV20 and NV25 (GeForce3, GeForce4 Ti), bit for bit, as the envytools project
-// measured it on silicon (docs: NV20 arithmetic). Values are the raw bits of binary32. NaN results are
+// measured it on silicon (docs/nv20_arithmetic.md). Values are the raw bits of binary32. NaN results are
 // 7fffffff; a value with exponent 0 is a zero for arithmetic.
 namespace splatscope::nv20 {
 

@@ -3,32 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "model/pixel/pixel_program.h"
+#include "model/testing/oracle.h"
 
 namespace splatscope::pixel {
 namespace {
 
 using nlohmann::json;
-
-json oracle(const std::string& name) {
-  return json::parse(std::ifstream(std::string(SPLATSCOPE_SOURCE "/tests/oracle/") + name));
-}
-
-Vec4 vector_of(const json& hex) {
-  Vec4 value{};
-  for (std::size_t i = 0; i < 4; ++i)
-    value[i] =
-        std::bit_cast<float>(static_cast<std::uint32_t>(std::stoul(hex[i].get<std::string>(), nullptr, 16)));
-  return value;
-}
 
 class PixelOracle : public testing::Test {
  protected:

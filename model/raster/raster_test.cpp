@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <memory>
@@ -16,6 +15,7 @@
 #include <tuple>
 
 #include "model/output/output.h"
+#include "model/testing/oracle.h"
 #include "model/testing/random_seed.h"
 #include "model/testing/simd_targets.h"
 
@@ -84,11 +84,9 @@ std::map<std::pair<int, int>, int> covered(const WindowTriangle& t, int subpixel
 }
 
 TEST(Raster, CoversWhatTheHardwareCovers) {
-  std::ifstream file(SPLATSCOPE_SOURCE "/tests/oracle/window_geometry.json");
-  ASSERT_TRUE(file);
-  const auto oracle = nlohmann::json::parse(file);
-  ASSERT_FALSE(oracle["cases"].empty());
-  for (const auto& c : oracle["cases"]) {
+  const nlohmann::json vectors = oracle("window_geometry.json");
+  ASSERT_FALSE(vectors["cases"].empty());
+  for (const auto& c : vectors["cases"]) {
     const double left = c["left"], top = c["top"], right = c["right"], bottom = c["bottom"];
     auto pixels = covered(triangle(left, top, right, top, right, bottom), 4);
     for (const auto& [pixel, count] : covered(triangle(left, top, right, bottom, left, bottom), 4)) {

@@ -4,33 +4,19 @@
 
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "model/testing/oracle.h"
 #include "model/vertex/vertex_program.h"
 
 namespace splatscope::vertex {
 namespace {
 
 using nlohmann::json;
-
-json oracle(const std::string& name) {
-  return json::parse(std::ifstream(std::string(SPLATSCOPE_SOURCE "/tests/oracle/") + name));
-}
-
-float from_hex(const std::string& hex) {
-  return std::bit_cast<float>(static_cast<std::uint32_t>(std::stoul(hex, nullptr, 16)));
-}
-
-Vec4 vector_of(const json& hex) {
-  Vec4 value{};
-  for (std::size_t i = 0; i < 4; ++i) value[i] = from_hex(hex[i]);
-  return value;
-}
 
 std::vector<std::string> hex_of(const Vec4& value) {
   std::vector<std::string> hex;

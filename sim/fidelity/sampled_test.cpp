@@ -85,7 +85,7 @@ class Machines : public ::testing::TestWithParam<std::vector<std::string>> {};
 // Each in its own bottleneck: vertices, memory, memory without reordering, setup, setup behind a queue that
 // takes long to fill, texture lookups.
 TEST_P(Machines, TheIntervalCoversTheTruthAndIsNarrow) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   for (const std::string& setting : GetParam()) machine::set(machine, setting);
   const RandomTrace made = splats(kTriangles, 7);
   const Result truth = simulate(made.trace, made.work, machine);
@@ -128,7 +128,7 @@ class SmallDraws : public ::testing::TestWithParam<std::uint32_t> {};
 // A draw that is all start and end has nothing to leave out, and perhaps no end or no start.
 TEST_P(SmallDraws, MayStandBesideASampledOne) {
   const RandomTrace made = frames_of_two_draws({{25000}}, GetParam());
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Result truth = simulate(made.trace, made.work, machine);
   const Result sampled = estimate_sampled(made.trace, made.work, machine);
   EXPECT_GT(sampled.cycles_plus_minus, 0);
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Triangles, SmallDraws, ::testing::Values(0U, 1U, 64U, 1
 // Equal ones, whose samples must lie in different places, and unlike ones, as progressive frames are: few and
 // small splats, many, large ones.
 TEST(Sampled, EveryFrameAndAllTogetherLieInTheirIntervals) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   for (const std::vector<FrameOfSplats>& frames :
        {std::vector<FrameOfSplats>{{25000}, {25000}, {25000}},
         std::vector<FrameOfSplats>{{5000}, {28000, 1}, {50000}, {30000, 12}}}) {
@@ -172,7 +172,7 @@ TEST(Sampled, EveryFrameAndAllTogetherLieInTheirIntervals) {
 
 TEST(Sampled, TheSeedAloneDecidesWhichSamplesAreTaken) {
   const RandomTrace made = splats(kTriangles, 7);
-  const Machine machine = machine::load("radeon-8500");
+  const Machine machine = machine::load(machine::kRadeon8500);
   const Result one = estimate_sampled(made.trace, made.work, machine, 1);
   EXPECT_EQ(one.cycles, estimate_sampled(made.trace, made.work, machine, 1).cycles);
   EXPECT_NE(one.cycles, estimate_sampled(made.trace, made.work, machine, 2).cycles);

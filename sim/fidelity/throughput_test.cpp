@@ -5,6 +5,7 @@
 
 #include "sim/fidelity/stretches.h"
 #include "sim/testing/random_trace.h"
+#include "sim/units/vertex/vertex_clocks.h"
 
 namespace splatscope::sim {
 namespace {
@@ -56,17 +57,17 @@ class Bottlenecks : public ::testing::TestWithParam<Bottleneck> {};
 
 // Each machine is slow in one unit, which then sets the time of both.
 TEST_P(Bottlenecks, SetTheEstimateAsTheySetTheSimulation) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   for (const std::string& setting : GetParam().settings) machine::assign(machine, setting);
   machine::check(machine);
   const RandomTrace made = GetParam().scene();
   const Result estimate = estimate_throughput(made.trace, made.work, machine);
   const Result simulated = simulate(made.trace, made.work, machine);
-  EXPECT_EQ(GetParam().unit, simulated.busiest().name);
-  EXPECT_EQ(GetParam().unit, estimate.busiest().name);
+  EXPECT_EQ(GetParam().unit, simulated.bottleneck().unit);
+  EXPECT_EQ(GetParam().unit, estimate.bottleneck().unit);
   EXPECT_NEAR(1.0, static_cast<double>(estimate.cycles) / static_cast<double>(simulated.cycles), 0.02);
-  EXPECT_NEAR(static_cast<double>(simulated.busiest().busy), static_cast<double>(estimate.busiest().busy),
-              0.02 * static_cast<double>(simulated.cycles));
+  EXPECT_NEAR(static_cast<double>(simulated.bottleneck().busy),
+              static_cast<double>(estimate.bottleneck().busy), 0.02 * static_cast<double>(simulated.cycles));
 }
 
 const Bottleneck kBottlenecks[] = {
@@ -104,7 +105,7 @@ TEST(Throughput, ADrawPaysForTheUnitsThatItUsesAlone) {
       for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
       made.work[0].texel_blocks.clear();
     }
-    Machine machine = machine::load("geforce4-ti4400");
+    Machine machine = machine::load(machine::kGeForce4);
     machine.depth.latency = depth;
     machine.texture.latency = texture;
     machine.pixel.latency = pixel;
@@ -140,7 +141,7 @@ RandomTrace draws_of(int triangles, int draws, MemoryPlace place) {
 }
 
 TEST(Throughput, AShortDrawWaitsForTheMemoryThatItsBuffersLieIn) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine.host.command_nanoseconds = 0;
   machine.agp.latency_nanoseconds = 10000;
   for (const MemoryPlace place : {MemoryPlace::video, MemoryPlace::agp}) {
@@ -153,7 +154,7 @@ TEST(Throughput, AShortDrawWaitsForTheMemoryThatItsBuffersLieIn) {
 }
 
 TEST(Throughput, ADrawOfNothingBeginsNoUnit) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine.host.command_nanoseconds = 0;
   RandomTrace made = testing::simple_trace(1);
   std::get<Draw>(made.trace.commands[1]).index_count = 0;
@@ -174,7 +175,7 @@ TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
   RandomTrace made = testing::simple_trace(10);
   made.trace.commands.emplace_back(NormalizeOnHost{});
   made.trace.commands.emplace_back(Present{});
-  const Machine machine = machine::load("radeon-8500");
+  const Machine machine = machine::load(machine::kRadeon8500);
   const Result estimate = estimate_throughput(made.trace, made.work, machine);
   const Result simulated = simulate(made.trace, made.work, machine);
   EXPECT_NEAR(1.0, static_cast<double>(estimate.cycles) / static_cast<double>(simulated.cycles), 1e-3);
@@ -187,7 +188,7 @@ TEST(Throughput, NormalisingOnTheHostCostsWhatItsReadsDo) {
 TEST(Throughput, ALatencyThatFillsAQueueSetsThePace) {
   for (const std::string_view setting :
        {"setup.latency", "raster.latency", "depth.latency", "texture.latency", "pixel.latency"}) {
-    Machine machine = machine::load("geforce4-ti4400");
+    Machine machine = machine::load(machine::kGeForce4);
     for (const std::string& more :
          {std::string("vertex.units=16"), std::string("depth.queue=4"), std::string("setup.queue=4"),
           std::string("raster.queue=4"), std::string("texture.queue=4"), std::string("pixel.queue=4"),
@@ -209,14 +210,14 @@ TEST(Throughput, UnitsThatADrawGoesPastAreNotBusyWithIt) {
   small.state.depth_test = true;
   small.index_count = 0;
   made.work.emplace_back().command = static_cast<std::uint32_t>(made.trace.commands.size() - 1);
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Result estimate = estimate_throughput(made.trace, made.work, machine);
   EXPECT_EQ(std::ranges::find(estimate.units, "depth", &UnitBooks::name)->busy, 0u);
 }
 
 // Where no draw uses depth there is none to clear. The simulation has the latency of its writes besides.
 TEST(Throughput, ClearsTheBuffersThatTheSimulationClears) {
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine.depth.fast_clear = false;
   for (const bool depth : {false, true}) {
     RandomTrace made = testing::simple_trace(10);
@@ -236,7 +237,7 @@ TEST(Throughput, ClearsTheBuffersThatTheSimulationClears) {
 
 // Four corners from a vertex: what does not depend on the corner runs once.
 TEST(Throughput, WhatIfAVertexEmitsFourCorners) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   RandomTrace made = testing::simple_trace(4000);
   const auto vertex_clocks = [&](const WhatIf& what_if) {
     const Result result = estimate_throughput(made.trace, made.work, machine, what_if);
@@ -254,7 +255,7 @@ TEST(Throughput, WhatIfAVertexEmitsFourCorners) {
 TEST(Throughput, WhatIfAUnitDividesPixels) {
   RandomTrace made = testing::simple_trace(10);
   made.trace.commands.emplace_back(NormalizeOnHost{});
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const auto cycles = [&](int pixels) {
     return estimate_throughput(made.trace, made.work, machine, {.divided_pixels_per_clock = pixels}).cycles;
   };
@@ -288,6 +289,48 @@ TEST(Throughput, KnowsTheUnitsThatATraceNeeds) {
     }
     EXPECT_EQ(estimate.units_left_out, simulated.units_left_out);
   }
+}
+
+// Quads that fail go no further, and hold no place of the depth test's queue.
+TEST(Throughput, QuadsThatFailTheDepthTestPassNoQueue) {
+  RandomTrace made = textured();
+  DrawWork& work = made.work[0];
+  work.texel_blocks.clear();
+  std::size_t quad = 0;
+  for (TriangleWork& triangle : work.triangles) {
+    triangle.quads_passed = 0;
+    for (std::uint32_t i = 0; i < triangle.quad_count; ++i, ++quad) {
+      const bool passed = i == 0;
+      work.quads[quad].passed = passed ? 15 : 0;
+      work.quads[quad].texel_block_count = passed ? 1 : 0;
+      triangle.quads_passed += passed;
+      if (passed) work.texel_blocks.push_back(0);
+    }
+  }
+  Machine machine = machine::load(machine::kGeForce4);
+  for (const char* setting : {"vertex.units=16", "depth.queue=4", "depth.latency=200"})
+    machine::assign(machine, setting);
+  const auto estimate = static_cast<double>(estimate_throughput(made.trace, made.work, machine).cycles);
+  const auto simulated = static_cast<double>(simulate(made.trace, made.work, machine).cycles);
+  EXPECT_NEAR(estimate / simulated, 1, 0.05);
+}
+
+// Where all depends on the corner, a vertex runs all of it four times.
+TEST(Throughput, WhatIfAVertexRunsAllOfItForEachCorner) {
+  const Machine machine = machine::load(machine::kGeForce4);
+  const RandomTrace made = testing::simple_trace(4000);
+  const auto vertex_clocks = [&](const WhatIf& what_if) {
+    const Result result = estimate_throughput(made.trace, made.work, machine, what_if);
+    return static_cast<double>(std::ranges::find(result.units, "vertex0", &UnitBooks::name)->busy);
+  };
+  isa::Program program = isa::load(made.trace.programs[1].text, made.trace.programs[1].name);
+  const double once = clocks_per_vertex(program, machine.vertex);
+  const std::vector<isa::Instruction> body = program.instructions;
+  for (int corner = 1; corner < 4; ++corner)
+    program.instructions.insert(program.instructions.end(), body.begin(), body.end());
+  const std::vector<std::uint32_t> everything(made.trace.programs.size(), ~0u);
+  EXPECT_NEAR(vertex_clocks({.corner_inputs = everything}) / vertex_clocks({}),
+              clocks_per_vertex(program, machine.vertex) / 4 / once, 0.01);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ double depth_bytes(bool fast_clear, bool clears, std::vector<ClearTile> clear_ti
   DrawWork& work = made.work[0];
   for (std::uint16_t i = 0; i < 4; ++i) work.quads[i].x = static_cast<std::uint16_t>(2 * i);
   work.clear_tiles = std::move(clear_tiles);
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine.depth.fast_clear = fast_clear;
   const MemoryLayout layout = lay_out(made.trace, machine);
   const PreparedDraws draws = prepare_draws(made.trace, made.work, machine, layout);
@@ -49,7 +49,7 @@ Traffic color_traffic(const std::function<void(Draw&)>& change, int burst_bytes 
     made.work[0].quads[i].y = 0;
   }
   made.work[0].texel_blocks = {0, 1, 2, 3, 7, 8, 8, 11};
-  Machine machine = machine::load("geforce4-ti4400");
+  Machine machine = machine::load(machine::kGeForce4);
   machine.blend.cache_lines = 4;
   machine.blend.cache_ways = 1;
   machine.texture.line_bytes = 64;
@@ -85,6 +85,23 @@ TEST(Traffic, NoColourIsNoTraffic) {
   EXPECT_EQ(none.color, 0);
   EXPECT_EQ(none.texture, 0);
   EXPECT_EQ(none.texel_blocks, 0);
+}
+
+// What was clear when a triangle began says nothing of the next one.
+TEST(Traffic, ATileIsClearForItsTriangleAlone) {
+  testing::RandomTrace made = testing::simple_trace(2);
+  DrawWork& work = made.work[0];
+  for (std::uint16_t i = 0; i < 8; ++i) {
+    work.quads[i].x = static_cast<std::uint16_t>(2 * i);
+    work.quads[i].y = 0;
+  }
+  work.clear_tiles = {{0, 0}, {0, 4}};  // the second is of the second triangle's first quad
+  const Machine machine = machine::load(machine::kGeForce4);
+  const MemoryLayout layout = lay_out(made.trace, machine);
+  const PreparedDraws draws = prepare_draws(made.trace, made.work, machine, layout);
+  TrafficCounter counter(machine, layout);
+  counter.clear();
+  EXPECT_EQ(8 * counter.of(draws.jobs[0]).depth, 7 * 64);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include "model/isa/analysis.h"
 #include "model/vertex/vertex_fetch.h"
-#include "sim/units/vertex/throughput.h"
+#include "sim/units/vertex/vertex_clocks.h"
 
 namespace splatscope::sim {
 namespace {

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim/observe/tile_cycles.h"
 #include "sim/observe/time_series.h"
 #include "sim/observe/timeline.h"
 #include "sim/testing/random_trace.h"
@@ -136,6 +137,11 @@ TEST(Timeline, ShowsTheWindowAlone) {
   }
   EXPECT_GT(shown, 10u);
   EXPECT_LT(shown, Json::parse(all.timeline).at("traceEvents").size());
+  Cycle commands = 0;  // they follow each other without a gap
+  for (const auto& [name, sum] :
+       cycles_of(observe(7, {.first = first, .last = last}).timeline).at("commands"))
+    commands += sum;
+  EXPECT_EQ(last - first + 1, commands);
 }
 
 TEST(Timeline, EndsWellWhereItIsCutShort) {
@@ -281,6 +287,66 @@ TEST(TimeSeries, TheRefereeWritesTheSameRows) {
       EXPECT_TRUE(series[0].str() == series[1].str()) << "seed " << seed << ", every " << interval;
     }
   }
+}
+
+TEST(TimeSeries, NoUnitIsBusyForLongerThanARow) {
+  for (const unsigned seed : kSeeds) {
+    const Table rows = table_of(observe(seed, {}, 4).series);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      for (std::size_t k = 0; k < rows[i].size(); ++k) {
+        if (!rows.front()[k].ends_with(".busy")) continue;
+        EXPECT_LE(std::stod(rows[i][k]), 1) << "seed " << seed << ", cycle " << rows[i].front();
+      }
+    }
+  }
+}
+
+// Of two triangles, the first in the first tile and the other in the second one.
+struct Tiles {
+  Result result;
+  std::vector<Cycle> cycles;
+};
+Tiles tiles_of(bool is_drawn, int draws, const Machine& machine) {
+  RandomTrace made = testing::simple_trace(2);
+  for (std::uint16_t i = 0; i < 8; ++i) {
+    made.work[0].quads[i].x = static_cast<std::uint16_t>(i < 4 ? 0 : 4);
+    made.work[0].quads[i].y = 0;
+  }
+  Draw& draw = std::get<Draw>(made.trace.commands[1]);
+  if (!is_drawn) {
+    draw.state.depth_test = draw.state.depth_write = draw.state.color_write = false;
+    draw.texture.reset();
+    for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
+    made.work[0].texel_blocks.clear();
+  }
+  for (int i = 1; i < draws; ++i) {
+    made.trace.commands.push_back(made.trace.commands[1]);
+    made.work.push_back(made.work[0]);
+    made.work.back().command = static_cast<std::uint32_t>(i + 1);
+  }
+  TileCycles tiles(made.trace.width, made.trace.height);
+  Observer* const observers[] = {&tiles};
+  Tiles out;
+  out.result = simulate(made.trace, made.work, machine, Scheduler::skip_ahead, {}, observers);
+  out.cycles = tiles.cycles();
+  return out;
+}
+
+TEST(TileCycles, AreAllThatTheRasteriserWasNotIdle) {
+  for (const bool is_drawn : {false, true}) {
+    const Tiles tiles = tiles_of(is_drawn, 3, machine::load(machine::kGeForce4));
+    const UnitBooks& raster = books_of(tiles.result, "raster");
+    EXPECT_EQ(tiles.cycles[0] + tiles.cycles[1], raster.busy + raster.starved + raster.blocked) << is_drawn;
+  }
+}
+
+// The second triangle comes 500 cycles after the first, and these are its tile's.
+TEST(TileCycles, WaitingIsTheNextQuads) {
+  Machine machine = machine::load(machine::kGeForce4);
+  machine.setup.clocks_per_triangle = 500;
+  const Tiles tiles = tiles_of(true, 1, machine);
+  EXPECT_GE(tiles.cycles[1], 500u);
+  EXPECT_LE(tiles.cycles[1], 510u);
 }
 
 }  // namespace

@@ -71,6 +71,9 @@ std::vector<Row> rows_of(const std::string& text) {
       if (cells[3] == "X") rows[number].issued = now;
     } else if (kind == "E") {
       EXPECT_EQ(stages.at(number), cells[3]);
+      if (cells[3] == "W") {
+        EXPECT_GT(now, rows[number].begun) << "it did not wait";
+      }
       stages[number] = "";
       if (cells[3] == "X") rows[number].ended = now;
     } else {

@@ -42,13 +42,16 @@ void add_picture(Report& report, const FrameRun& run) {
 void add_times(Report& report, const sim::Result& timing) {
   std::vector<std::vector<std::string>> rows;
   for (const sim::Cycle cycles : timing.frame_cycles) {
-    rows.push_back({fmt::format("{}", rows.size() + 1), grouped(cycles),
+    const std::size_t frame = rows.size();
+    const std::string plus_minus =
+        timing.frame_plus_minus.empty() ? "" : fmt::format(" ± {:.0f}", timing.frame_plus_minus[frame]);
+    rows.push_back({fmt::format("{}", frame), grouped(cycles) + plus_minus,
                     fmt::format("{:.3f}", 1000 * timing.seconds_of(cycles)),
                     fmt::format("{:.2f}", timing.frames_per_second(cycles))});
   }
-  const sim::UnitBooks& busiest = timing.busiest();
-  report.table(fmt::format("Time. {} was the busiest unit, {:.0f} % of the cycles.", busiest.name,
-                           100 * timing.share(busiest.busy)),
+  const sim::Result::Bottleneck bottleneck = timing.bottleneck();
+  report.table(fmt::format("Time. {} was the busiest unit, {:.0f} % of the cycles.", bottleneck.unit,
+                           100 * timing.share(bottleneck.busy)),
                {{"frame", number}, {"core cycles", number}, {"ms", number}, {"frames/s", number}}, rows);
 }
 

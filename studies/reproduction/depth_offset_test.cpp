@@ -17,7 +17,7 @@ traces::Scene small_knot() {
 class DepthOffset : public testing::Test {
  protected:
   const traces::Scene scene_ = small_knot();
-  const Machine machine_ = machine::load("geforce4-ti4400");
+  const Machine machine_ = machine::load(machine::kGeForce4);
   const VisibleSurface surface_ = visible_surface(scene_);
   const traces::CapturedWeights weights_ = traces::capture_weights(scene_, machine_.numbers);
 };

@@ -144,7 +144,7 @@ class Figure10 {
 
   Findings& findings_;
   const Progress& progress_;
-  const Machine machine_ = machine::load("geforce4-ti4400");
+  const Machine machine_ = machine::load(machine::kGeForce4);
   std::vector<Findings::Picture> pictures_;
   nlohmann::ordered_json results_;
 };

@@ -20,7 +20,7 @@ TEST(Figure10, GammaKeepsTheSumsFromClamping) {
   const double suitable = scene.splatting.gamma;
   const double gammas[] = {0.5 * suitable, suitable, 1};
   const auto rows =
-      sweep_gamma(scene, gammas, machine::load("geforce4-ti4400"), screen_space_reference(scene));
+      sweep_gamma(scene, gammas, machine::load(machine::kGeForce4), screen_space_reference(scene));
   ASSERT_EQ(3u, rows.size());
   EXPECT_EQ(0, rows[0].saturated);
   EXPECT_EQ(0, rows[0].clamped);
@@ -36,7 +36,7 @@ TEST(Figure10, GammaKeepsTheSumsFromClamping) {
 
 TEST(Figure10, WeightsMakeThePicture) {
   const traces::Scene scene = small_knot();
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const auto reference = screen_space_reference(scene);
   traces::CapturedWeights weights = traces::capture_weights(scene, machine.numbers);
   const double normalized = psnr(draw_frame(scene, weights, machine), reference);

@@ -20,7 +20,7 @@ void reproduce_figure11(Findings& findings, const Progress& progress) {
       {"ewa-per-pixel", "b) EWA, normalised per pixel"},
       {"ewa-per-surfel", "c) EWA, normalised per surfel"},
   };
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   // EWA in double precision, whatever the algorithm.
   const kernels::SplatSums reference =
       single_surface_reference(traces::load_scene("checkerboard-ewa-per-pixel"));

@@ -19,7 +19,7 @@ traces::Scene small_checkerboard(std::string_view algorithm) {
 }
 
 TEST(Figure11, AliasesWithoutEwaAlone) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const kernels::SplatSums reference = single_surface_reference(small_checkerboard("ewa-per-pixel"));
   const auto decibels = [&](std::string_view algorithm) {
     return draw_checkerboard(small_checkerboard(algorithm), reference, machine).psnr;

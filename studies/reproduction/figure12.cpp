@@ -39,7 +39,7 @@ ModelPicture draw_model(const traces::Scene& scene, const Machine& machine, cons
 }
 
 void reproduce_figure12(Findings& findings, const Progress& progress) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const std::vector<Shown> models = shown_models();
   std::vector<Findings::Comparison> pictures;
   auto list = nlohmann::ordered_json::array();

@@ -17,7 +17,7 @@ traces::Scene small_model(std::string_view algorithm) {
 }
 
 TEST(Figure12, AFinePatternIsSmoothWithoutHoles) {
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const Comparison ewa = draw_model(small_model("ewa-per-surfel"), machine).comparison;
   EXPECT_GT(ewa.pixels_off_edges, 1000u);
   EXPECT_EQ(ewa.holes, 0u);

@@ -121,7 +121,7 @@ void reproduce_figure3(Findings& findings, const Progress& progress) {
       fmt::format("{:<6}{:<8}{:>8} {:>8} {:>9}\n", "fig3", "surfels", "side, h", "holes", "inside"));
   for (const auto& [name, scene] : {std::pair("even", &scenes.even), {"uneven", &scenes.uneven}}) {
     const std::vector<DepthImage> images =
-        depth_images(*scene, kSides, surface, machine::load("geforce4-ti4400"));
+        depth_images(*scene, kSides, surface, machine::load(machine::kGeForce4));
     std::vector<Findings::Picture> pictures;
     Plot::Series series{name, {}, {}};
     auto list = nlohmann::ordered_json::array();

@@ -18,7 +18,7 @@ TEST(Figure3, QuadsOfTwiceTheDistanceLeaveNoHole) {
   traces::Scene dense = knot(60000);
   dense.camera = scene.camera;
   const double sides[] = {0.5, 1, 2};
-  const auto images = depth_images(scene, sides, visible_surface(dense), machine::load("geforce4-ti4400"));
+  const auto images = depth_images(scene, sides, visible_surface(dense), machine::load(machine::kGeForce4));
   ASSERT_EQ(3u, images.size());
   EXPECT_GT(images[0].inside_pixels, 5000u);
   EXPECT_GT(images[0].holes.size(), images[0].inside_pixels / 4);
@@ -38,7 +38,7 @@ TEST(Figure3, ASurfaceFarBehindIsAHole) {
   traces::Scene dense = knot(60000);
   dense.camera = scene.camera;
   const double sides[] = {2};
-  const auto images = depth_images(without, sides, visible_surface(dense), machine::load("geforce4-ti4400"));
+  const auto images = depth_images(without, sides, visible_surface(dense), machine::load(machine::kGeForce4));
   std::size_t covered = 0;
   for (const std::size_t pixel : images[0].holes) covered += images[0].frame.depth_value(pixel) < 1;
   EXPECT_GT(covered, 100u);

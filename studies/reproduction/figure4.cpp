@@ -81,7 +81,7 @@ traces::Scene figure4_scene() {
 
 void reproduce_figure4(Findings& findings, const Progress& progress) {
   const traces::Scene scene = figure4_scene();
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const VisibleSurface surface = visible_surface(scene);
   const traces::CapturedWeights weights =
       traces::capture_weights(scene, machine.numbers, part(progress, 0, 0.8));

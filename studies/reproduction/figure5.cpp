@@ -92,7 +92,7 @@ std::vector<OffsetRow> sweep_offset(const traces::Scene& scene, std::span<const 
 
 void reproduce_figure5(Findings& findings, const Progress& progress) {
   const traces::Scene scene = figure5_scene();
-  const Machine machine = machine::load("geforce4-ti4400");
+  const Machine machine = machine::load(machine::kGeForce4);
   const VisibleSurface surface = visible_surface(scene);
   const traces::CapturedWeights weights =
       traces::capture_weights(scene, machine.numbers, part(progress, 0, 0.4));

@@ -18,9 +18,9 @@ struct Published {
   double fps;
 };
 constexpr Published kPublished[] = {
-    {"no-ewa", "radeon-8500", 57.3},         {"no-ewa", "geforce4-ti4400", 59.6},
-    {"ewa-per-pixel", "radeon-8500", 1.3},   {"ewa-per-pixel", "geforce4-ti4400", 1.0},
-    {"ewa-per-surfel", "radeon-8500", 16.9}, {"ewa-per-surfel", "geforce4-ti4400", 23.8},
+    {"no-ewa", machine::kRadeon8500, 57.3},         {"no-ewa", machine::kGeForce4, 59.6},
+    {"ewa-per-pixel", machine::kRadeon8500, 1.3},   {"ewa-per-pixel", machine::kGeForce4, 1.0},
+    {"ewa-per-surfel", machine::kRadeon8500, 16.9}, {"ewa-per-surfel", machine::kGeForce4, 23.8},
 };
 
 // The parameter fitted to a row, or nothing: machine files name the rows, as in "table1 ewa-per-surfel,

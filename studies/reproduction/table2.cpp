@@ -88,7 +88,7 @@ traces::Scene table2_scene(const Table2Model& model, const Progress& progress) {
 }
 
 double free_video_memory(std::string_view machine) {
-  return machine == "radeon-8500" ? 56 : 120;
+  return machine == machine::kRadeon8500 ? 56 : 120;
 }
 
 std::vector<Table2Row> table2_rows(Fidelity fidelity, const Progress& progress) {
@@ -104,7 +104,8 @@ std::vector<Table2Row> table2_rows(Fidelity fidelity, const Progress& progress) 
     traces::Scene scene = table2_scene(model, step(0, 0.2));
     double frame = 0;
     for (const auto& [resolution, radeon, ti4400] : model.published) {
-      for (const auto& [name, fps] : {std::pair("radeon-8500", radeon), {"geforce4-ti4400", ti4400}}) {
+      for (const auto& [name, fps] :
+           {std::pair(machine::kRadeon8500, radeon), {machine::kGeForce4, ti4400}}) {
         const Machine machine = machine::load(name);
         scene.frame = {.width = resolution, .height = resolution};
         scene.splatting.video_megabytes = free_video_memory(name);

@@ -28,11 +28,12 @@ TEST(Table2, ComesNearThePublishedRatesAndKeepsTheirOrder) {
   };
   for (const int resolution : {256, 512}) {
     for (const Table2Model& model : table2_models()) {
-      EXPECT_EQ(model.points, found.at(key(model.name, resolution, "radeon-8500"))->points);
-      EXPECT_LT(fps(model.name, resolution, "radeon-8500"), fps(model.name, resolution, "geforce4-ti4400"));
+      EXPECT_EQ(model.points, found.at(key(model.name, resolution, machine::kRadeon8500))->points);
+      EXPECT_LT(fps(model.name, resolution, machine::kRadeon8500),
+                fps(model.name, resolution, machine::kGeForce4));
     }
     // Salamander and chameleon have as many points but for 2%, and come out as near.
-    for (const char* machine : {"radeon-8500", "geforce4-ti4400"}) {
+    for (const std::string_view machine : {machine::kRadeon8500, machine::kGeForce4}) {
       EXPECT_GT(fps("salamander", resolution, machine), fps("wasp", resolution, machine));
       EXPECT_GT(fps("chameleon", resolution, machine), fps("wasp", resolution, machine));
       EXPECT_GT(fps("wasp", resolution, machine), fps("fiesta", resolution, machine));
@@ -41,7 +42,8 @@ TEST(Table2, ComesNearThePublishedRatesAndKeepsTheirOrder) {
   // The vertex units are the bottleneck at both sizes, so the pixels cost nothing beside them: the paper's
   // trend is not there (docs/table2.md). What culling leaves differs a little.
   for (const Table2Model& model : table2_models()) {
-    EXPECT_NEAR(1, fps(model.name, 512, "radeon-8500") / fps(model.name, 256, "radeon-8500"), 0.06)
+    EXPECT_NEAR(1, fps(model.name, 512, machine::kRadeon8500) / fps(model.name, 256, machine::kRadeon8500),
+                0.06)
         << model.name;
   }
 }

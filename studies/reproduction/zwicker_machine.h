@@ -24,11 +24,11 @@ struct VolumeRow {
   std::string name, stand_in;
   glm::ivec3 size{};
   std::size_t splats = 0, flat = 0, sheets = 0, vertex_bytes = 0;
-  double psnr_8_bits = 0;       // dB, over the pixels that the volume covers
+  double psnr_8_bits = 0;       // of the GeForce4, dB, over the pixels that the volume covers
   double psnr_float = 0;        // the same with floats everywhere
   double software_seconds = 0;  // of this host: kernels/reference/volume/fast_volume.h
   std::vector<VolumeFrame> frames;
-  Image software, machine;
+  Image software, machine;  // the latter of the GeForce4
 };
 
 // On both machines by `fidelity`, which gives times.
@@ -38,7 +38,7 @@ VolumeRow volume_row(const VolumeModel& model, Fidelity fidelity, const Progress
 // each contribution to 8 bits. Texture and vertices are as on the machine.
 struct FormatRow {
   FrameFormat format{};
-  double psnr = 0;  // dB
+  double psnr = 0;  // of the GeForce4, dB
   std::vector<VolumeFrame> frames;
 };
 std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity,

@@ -133,15 +133,4 @@ SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, const glm::
   return point;
 }
 
-void append(Mesh& mesh, const Mesh& other, std::uint32_t part) {
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-  mesh.normals.insert(mesh.normals.end(), other.normals.begin(), other.normals.end());
-  for (std::size_t i = 0; i < other.triangles.size(); ++i) {
-    const auto& t = other.triangles[i];
-    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-    mesh.parts.push_back(part + (other.parts.empty() ? 0 : other.parts[i]));
-  }
-}
-
 }  // namespace splatscope::traces

@@ -61,8 +61,4 @@ MeshCounts mend(Mesh& mesh);
 // `weights` are barycentric: those of the triangle's corners, their sum 1.
 SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& weights);
 
-// Adds the triangles of `other`; `part` is added to its parts. Both have normals or neither; other attributes
-// are not carried.
-void append(Mesh& mesh, const Mesh& other, std::uint32_t part);
-
 }  // namespace splatscope::traces

@@ -58,11 +58,18 @@ Mesh triangle_at(float x, float y, float edge) {
   return mesh;
 }
 
+void append(Mesh& mesh, const Mesh& other) {
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  mesh.normals.insert(mesh.normals.end(), other.normals.begin(), other.normals.end());
+  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
+
 // Tiny triangles that hang together nowhere.
 Mesh crumbs(int edge) {
   Mesh mesh;
   for (int i = 0; i < edge * edge; ++i)
-    append(mesh, triangle_at(static_cast<float>(i % edge), static_cast<float>(i / edge), 0.002f), 0);
+    append(mesh, triangle_at(static_cast<float>(i % edge), static_cast<float>(i / edge), 0.002f));
   return mesh;
 }
 
@@ -84,7 +91,7 @@ TEST(Sampler, NoTwoPointsHaveTheSamePosition) {
 // Two triangles so far apart that each lies in a cell or two; the second has 66 places, near 1e7.
 TEST(Sampler, PartsFarApartHavePlacesOfTheirOwn) {
   Mesh mesh = triangle_at(0, 0, 1);
-  append(mesh, triangle_at(1e7f, 0, 10), 0);
+  append(mesh, triangle_at(1e7f, 0, 10));
   SamplerOptions options;
   options.count = 5000;
   const MeshSamples samples = sample(mesh, options);

@@ -23,8 +23,8 @@ std::span<const SceneKey> volume_keys() {
                    {"marschner-lobb", "shells", "zebra", "head", "constant"},
                    0}},
       {"volume", "voxels", "voxels",
-       "of the generator along x, y and z, from 1 on and at most 67108864 in all; three zeros: its own "
-       "number",
+       "of the generator along x, y and z, from 1 on (of \"marschner-lobb\" and \"shells\" three times the "
+       "same, from 2 on) and at most 67108864 in all; three zeros: its own number",
        VectorValue{[](S& s) -> glm::dvec3& { return s.volume.voxels; }, {0, 0, 0}, 0, 2048}},
       {"volume", "x", "object units",
        "rectilinear grid: where its voxels stand along x, as many as there are; none: evenly spaced",

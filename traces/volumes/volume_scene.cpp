@@ -17,6 +17,7 @@
 #include "traces/framing.h"
 #include "traces/scene_settings.h"
 #include "traces/scene_text.h"
+#include "traces/splat_trace.h"
 #include "traces/volumes/nrrd_file.h"
 #include "traces/volumes/sample_file.h"
 
@@ -241,9 +242,7 @@ kernels::View view_of(SceneSettings& settings, const kernels::Box& box, std::str
   const Frame frame{settings.width, settings.height};
   frame_camera(corners_of(box), 0, frame, settings.camera_given, settings.camera);
   check_camera(settings, file);
-  const Camera& camera = settings.camera;
-  return kernels::look_at(camera.eye, camera.target, camera.up, camera.fov_y_degrees, frame.width,
-                          frame.height, camera.near, camera.far);
+  return traces::view_of(settings.camera, frame);
 }
 
 }  // namespace

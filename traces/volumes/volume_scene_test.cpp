@@ -83,12 +83,16 @@ TEST(VolumeScene, SaysWhatIsWrong) {
             "a.toml:2: volume.light is zero, expected a direction");
   EXPECT_EQ(volume_scene_error("[volume]\nfile = \"none.nrrd\"\n"),
             "none.nrrd: cannot be read, expected a NRRD file");
-  for (const char* points :
-       {"[{ value = 1, opacity = 2, color = [0, 0, 0] }]", "[{ value = 1 }]", "3", "[3]",
-        "[{ value = nan, opacity = 0, color = [0, 0, 0] }]",
-        "[{ value = 2, opacity = 0, color = [0, 0, 0] }, { value = 1, opacity = 0, color = [0, 0, 0] }]"}) {
-    const std::string text = volume_scene_error(std::string("[volume]\ntransfer = ") + points + "\n");
-    EXPECT_TRUE(text.starts_with("a.toml:2: volume.transfer is ")) << text;
+  for (const auto& [points, wrong] :
+       {std::pair("[{ value = 1, opacity = 2, color = [0, 0, 0] }]", "2: volume.transfer[0] is { color = "),
+        {"[{ value = 1 }]", "2: volume.transfer[0] is { value = 1 }, expected an array of { value, "},
+        {"3", "2: volume.transfer is 3, "},
+        {"[3]", "2: volume.transfer[0] is 3, "},
+        {"[{ value = nan, opacity = 0, color = [0, 0, 0] }]", "2: volume.transfer[0] is "},
+        {"[{ value = 2, opacity = 0, color = [0, 0, 0] },\n{ value = 1, opacity = 0, color = [0, 0, 0] }]",
+         "3: volume.transfer[1] is "}}) {
+    const std::string text = volume_scene_error(fmt::format("[volume]\ntransfer = {}\n", points));
+    EXPECT_TRUE(text.starts_with(fmt::format("a.toml:{}", wrong))) << text;
   }
 }
 
@@ -303,7 +307,7 @@ TEST_F(VolumeKinds, SaysWhatIsWrong) {
   const std::string file = "file = \"values.nrrd\"\n";
   EXPECT_EQ(error(file + "x = [0, 1]\n"), "s.toml:3: volume.x has 2 places, expected 5, one for each voxel");
   EXPECT_EQ(error(file + "y = [0, 2, 1, 3]\n"),
-            "s.toml:3: volume.y is [ 0, 2, 1, 3 ], expected an array of rising numbers from -1e+09 to 1e+09");
+            "s.toml:3: volume.y[2] is 1, expected an array of rising numbers from -1e+09 to 1e+09");
   EXPECT_EQ(error(file + "x = [0, 1, 2, 3, 4]\npositions = \"places.nrrd\"\n"),
             "s.toml:4: volume.positions beside volume.x, y or z, expected the one or the other");
   EXPECT_EQ(error("generator = \"constant\"\nvoxels = [5, 4, 2]\npositions = \"places.nrrd\"\n"),

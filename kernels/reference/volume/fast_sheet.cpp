@@ -18,14 +18,7 @@ namespace {
 
 constexpr std::size_t kLanes = FastSurfels::kPadding;  // at most
 
-// W a, and W^T a, which takes a row of the Jacobian to object space.
-HWY_INLINE V3 turned(const FastVolumeView& view, const V3& a) {
-  const auto row = [&](int r) HWY_ATTR {
-    return hn::Add(hn::Add(hn::Mul(set(view.rows[r][0]), a.x), hn::Mul(set(view.rows[r][1]), a.y)),
-                   hn::Mul(set(view.rows[r][2]), a.z));
-  };
-  return {row(0), row(1), row(2)};
-}
+// W^T a: takes a row of the Jacobian to object space.
 HWY_INLINE V3 turned_back(const FastVolumeView& view, const V3& a) {
   const auto column = [&](int c) HWY_ATTR {
     return hn::Add(hn::Add(hn::Mul(set(view.rows[0][c]), a.x), hn::Mul(set(view.rows[1][c]), a.y)),
@@ -57,11 +50,6 @@ struct Lanes {
     return {hn::Load(F{}, values[c]), hn::Load(F{}, values[c + 1]), hn::Load(F{}, values[c + 2])};
   }
 };
-
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, s), hn::Mul(q, r)); };
-  return {minor(a.y, a.z, b.y, b.z), minor(a.z, a.x, b.z, b.x), minor(a.x, a.y, b.x, b.y)};
-}
 
 // Its determinant by itself: from these three it would be what rounding leaves of two products that are equal
 // but for it, where a splat close to the eye's plane is a thousand times longer than wide.

@@ -24,7 +24,6 @@ class TransferFunction {
   explicit TransferFunction(std::vector<TransferPoint> points);
 
   VoxelLook operator()(double value) const;
-  const std::vector<TransferPoint>& points() const { return points_; }
 
  private:
   std::vector<TransferPoint> points_;

@@ -52,5 +52,32 @@ TEST(BlendUnit, AFloatLineIsReadInPartsOfOneMemoryChannelEach) {
   EXPECT_EQ(run.bench.done_at(), 47u);  // the stub takes one request a cycle: the last part is there in 45
 }
 
+// What a sampled draw left out is in the cache: one line of it is hit, another written back for the last
+// quad's. Quads that failed bring none.
+TEST(BlendUnit, WhatWasLeftOutPassesThroughTheTags) {
+  testing::Bench bench;
+  testing::Source<std::uint32_t> source{{{0, 0u}, {0, 1u}, {0, 2u}}};
+  BlendUnit blend("blend", bench.completion(), {4, 4, 8}, FrameLines::of(512, 512, 4), 1);
+  Channel<std::uint32_t> in((bench.add(source), bench.add(blend), "in"), source, blend, 8);
+  testing::TestMemory memory(bench, blend, 40);
+  testing::TestDraw draw, left_out;
+  draw.draw.state.blend = true;
+  draw.add_quad(8, 0);   // its line is read, and leaves again
+  draw.add_quad(10, 0);  // its line is in the cache
+  draw.add_quad(20, 0);
+  for (const int x : {2, 4, 6, 10}) left_out.add_quad(x, 0);
+  left_out.add_quad(30, 0, {}, 0);
+  const Cut cuts[] = {{0, 1, {}, left_out.work.quads, {}}};
+  draw.job.cuts = cuts;
+  source.connect(in);
+  blend.connect(in, memory.port, 0);
+  bench.begin(draw.prepare(), {&blend});
+  bench.run();
+  std::vector<std::pair<std::uint32_t, bool>> traffic;
+  for (const auto& [at, request] : memory.memory.requests())
+    traffic.emplace_back(request.address / 64, request.write);
+  EXPECT_EQ(traffic, (std::vector<std::pair<std::uint32_t, bool>>{{4, false}, {1, true}, {10, false}}));
+}
+
 }  // namespace
 }  // namespace splatscope::sim

@@ -71,5 +71,30 @@ TEST(CommandProcessor, AClearWritesTheSurfacesAndWaitsForMemory) {
   EXPECT_EQ(reports.taken(), (testing::Timed<std::uint32_t>{{49, 0u}}));
 }
 
+// All four requests go out in 2, two to each channel; the second of these is there in 44.
+TEST(CommandProcessor, AClearWritesToAllChannelsAtOnce) {
+  testing::Bench bench;
+  testing::Source<Order> host({{0, Order{OrderKind::clear, 0}}});
+  CommandProcessor command("command", bench.completion());
+  testing::Sink<std::uint32_t> reports;
+  testing::FixedMemory even(40), odd(40);
+  for (Unit* unit : {static_cast<Unit*>(&host), static_cast<Unit*>(&command), static_cast<Unit*>(&reports),
+                     static_cast<Unit*>(&even), static_cast<Unit*>(&odd)})
+    bench.add(*unit);
+  Channel<Order> orders("orders", host, command, 1);
+  Channel<std::uint32_t> done("done", command, reports, 1);
+  Channel<MemoryRequest> to_even("even", command, even, 2), to_odd("odd", command, odd, 2);
+  MemoryPort port(command, 1);
+  even.connect(port, to_even);
+  odd.connect(port, to_odd);
+  port.connect({&to_even, &to_odd}, 64);
+  host.connect(orders);
+  reports.connect(done);
+  command.connect(orders, done, port);
+  command.set_frame(nullptr, true, nullptr, {{0, 256}});
+  bench.run();
+  EXPECT_EQ(reports.taken(), (testing::Timed<std::uint32_t>{{45, 0u}}));
+}
+
 }  // namespace
 }  // namespace splatscope::sim

@@ -110,5 +110,15 @@ TEST(Host, PresentWritesTheCachesBackAndTheLastOneEndsTheRun) {
   EXPECT_EQ(run.host.finished_at(), 88u);
 }
 
+TEST(Host, APixelIsWrittenInWholeClocks) {
+  Machine::Host spec;
+  spec.uncached_read_nanoseconds = 0;
+  spec.division_nanoseconds = 0;
+  for (const auto& [bytes, clocks] : {std::pair(2, 2u), {3, 2u}, {4, 1u}, {8, 1u}}) {
+    spec.write_bytes_per_clock = bytes;
+    EXPECT_EQ(Host::pixel_time(spec, kPeriod, 4), clocks * kPeriod) << bytes;
+  }
+}
+
 }  // namespace
 }  // namespace splatscope::sim

@@ -176,5 +176,34 @@ TEST(MemoryPort, ConsecutiveAddressesGoRoundTheChannels) {
   EXPECT_EQ(b.statistics(kNever)[0].value, 3u);
 }
 
+// Both wait for the same precharge.
+TEST(MemoryChannel, OfEqualsTheOldestGoesFirst) {
+  EXPECT_EQ(serve({{0, 64}, {512, 16}, {1024, 16}}, spec()).answers, (std::vector<Cycle>{19, 33, 47}));
+}
+
+// Taken in turn and served in order, each two clocks behind the one before.
+TEST(MemoryChannel, ClientsTakeTurns) {
+  Bench bench;
+  Client first({{0, 16}, {64, 16}, {128, 16}}), second({{16, 16}, {80, 16}, {144, 16}});
+  Machine::Memory in_order = spec();
+  in_order.bypass_limit = 0;
+  MemoryChannel channel("memory", in_order);
+  bench.add(first);
+  bench.add(second);
+  bench.add(channel);
+  Channel<MemoryRequest> of_first("first", first, channel, 8), of_second("second", second, channel, 8);
+  channel.connect(first.port, of_first);
+  channel.connect(second.port, of_second);
+  first.port.connect({&of_first}, 64);
+  second.port.connect({&of_second}, 64);
+  bench.run();
+  for (const Cycle end : {13, 17, 21}) {
+    EXPECT_EQ(first.port.oldest_ready(), end + 1);
+    EXPECT_EQ(second.port.oldest_ready(), end + 2 + 1);
+    first.port.release_oldest();
+    second.port.release_oldest();
+  }
+}
+
 }  // namespace
 }  // namespace splatscope::sim

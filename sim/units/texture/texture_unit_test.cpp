@@ -118,5 +118,28 @@ TEST(TextureUnit, QuadsWithoutATexturePassThrough) {
   EXPECT_EQ(run.sink.taken(), (Timed<std::uint32_t>{{3, 0u}}));
 }
 
+TEST(TextureUnit, AMissReadsAPartOfATextureLineAndAllOfASurfaces) {
+  for (const bool surface : {false, true}) {
+    testing::TestDraw draw;
+    draw.add_quad(0, 0, {5});
+    if (surface) draw.draw.source = 1;
+    Machine::Texture spec = small_cache();
+    spec.line_bytes = 64;
+    spec.fill_bytes = 32;
+    const TextureBench run(draw, spec, 40);
+    ASSERT_EQ(run.memory.memory.requests().size(), 1u);
+    EXPECT_EQ(run.memory.memory.requests()[0].second.bytes, surface ? 64u : 32u);
+  }
+}
+
+// Looks up in 1, 3, 5 and 7, as the memory takes a request in every second clock, and leaves in 48.
+TEST(TextureUnit, IsBusyInEachClockThatItLooksUp) {
+  testing::TestDraw draw;
+  draw.add_quad(0, 0, {0, 1, 2, 3});
+  const TextureBench run(draw, small_cache(), 40, 1);
+  const Books books = run.bench.books(run.texture, run.bench.done_at());
+  EXPECT_EQ(books.cycles[Step::kBusy], 5u);
+}
+
 }  // namespace
 }  // namespace splatscope::sim

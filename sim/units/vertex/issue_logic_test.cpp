@@ -7,7 +7,7 @@
 
 #include "model/error.h"
 #include "model/machine/machine.h"
-#include "sim/units/vertex/throughput.h"
+#include "sim/units/vertex/vertex_clocks.h"
 
 namespace splatscope::sim {
 namespace {
@@ -110,12 +110,12 @@ TEST(IssueLogic, no_more_vertices_than_threads) {
 
 // NVIDIA's 125 M vertices a second of two units at 275 MHz are 4.4.
 TEST(Throughput, transform_on_the_geforce4) {
-  EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load("geforce4-ti4400").vertex),
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load(machine::kGeForce4).vertex),
                    13.0 / 3);
 }
 
 TEST(Throughput, transform_on_the_radeon) {
-  EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load("radeon-8500").vertex), 4);
+  EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load(machine::kRadeon8500).vertex), 4);
 }
 
 TEST(Throughput, says_which_slot_waits) {
@@ -144,6 +144,14 @@ TEST(Throughput, no_more_vertices_are_on_their_way_than_the_unit_holds) {
   EXPECT_DOUBLE_EQ(clocks_per_vertex(program, spec), (3.0 + 64) / 2);
   spec.threads = 3;
   EXPECT_DOUBLE_EQ(clocks_per_vertex(program, spec), (7.0 + 64) / 6);
+}
+
+// r0.x: MOV in 0, there in 9. RSQ may write it in 8 at the earliest, to be there in 9; oPos in 9.
+TEST(IssueLogic, a_short_scalar_result_does_not_overtake_a_long_one) {
+  Machine::Vertex spec = unit_of(1, 0);
+  spec.vector_latency = 9;
+  spec.scalar_latency = 1;
+  EXPECT_EQ(ends_of("mov r0.x, c1\nrsq r0.x, c0.x\nmov oPos, r0.x\n", spec, 1), (Ends{{9, 0}}));
 }
 
 }  // namespace

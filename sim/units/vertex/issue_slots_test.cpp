@@ -19,7 +19,7 @@ Machine::Vertex plain() {
 }
 
 Machine::Vertex nv25() {
-  return machine::load("geforce4-ti4400").vertex;
+  return machine::load(machine::kGeForce4).vertex;
 }
 
 std::size_t slots(std::string_view body, Machine::Vertex spec) {
@@ -37,7 +37,10 @@ TEST(IssueSlots, WhatKeepsTwoFromPairing) {
   EXPECT_EQ(slots("rcp r0.x, r2.x\nrsq r1.x, r2.x\n", plain()), 2u);        // both scalar
   EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, r0.x\n", plain()), 2u);        // needs the result
   EXPECT_EQ(slots("add r0, v0, c0\nrcp r1.x, r2.x\n", plain()), 2u);        // third operand port
+  EXPECT_EQ(slots("sub r0, v0, c0\nrcp r1.x, r2.x\n", plain()), 2u);        // third operand port
+  EXPECT_EQ(slots("mad r0, v0, c0, r3\nrcp r1.x, r2.x\n", plain()), 2u);    // third operand port
   EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, c1.x\n", plain()), 2u);        // two constants
+  EXPECT_EQ(slots("mul r0, v0, c[a0.x]\nrcp r1.x, c0.x\n", plain()), 2u);   // two constants, perhaps
   EXPECT_EQ(slots("mul r0, v0, c0\nrcp r1.x, v1.x\n", plain()), 2u);        // two inputs
   EXPECT_EQ(slots("mov oPos, r3\nrcp oD0.w, r2.x\n", plain()), 2u);         // two outputs
   EXPECT_EQ(slots("mul r0.x, v0.x, c0.x\nrcp r0.x, r2.x\n", plain()), 2u);  // the same component
@@ -96,6 +99,18 @@ TEST(IssueSlots, MacrosTakeTheirSlots) {
   }
   const Program chain = program("exp r0.x, v0.x\n");
   EXPECT_EQ(issue_slots(chain, plain()).size(), static_cast<std::size_t>(isa::slot_count(chain)));
+}
+
+// The scalar unit takes an instruction in every third clock; what else is there stands between.
+TEST(IssueSlots, TheDriverKeepsScalarInstructionsApart) {
+  Machine::Vertex spec = plain();
+  spec.driver_reorders = true;
+  spec.scalar_interval = 3;
+  std::vector<int> order;
+  for (const IssueSlot& slot :
+       issue_slots(program("rcp r0.x, v0.x\nrcp r1.x, v0.y\nmov r2, v0\nmov r3, v0\n"), spec))
+    order.push_back(slot.instructions[0]);
+  EXPECT_EQ(order, (std::vector<int>{0, 2, 3, 1}));
 }
 
 }  // namespace

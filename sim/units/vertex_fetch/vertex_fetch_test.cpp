@@ -115,5 +115,24 @@ TEST(VertexFetch, IsBlockedWhileNoUnitHasRoom) {
   EXPECT_EQ(books.cycles[kBlockedByFirst], 201u - 24);
 }
 
+// The indices of 32 triangles fill three lines of 64 bytes.
+TEST(VertexFetch, ReadsTheLinesThatHoldItsIndicesAlone) {
+  testing::TestDraw draw;
+  for (int i = 0; i < 32; ++i) draw.add_triangle(i == 0 ? 3 : 0, 0, 1);
+  draw.work.shaded_vertices = {0, 1, 2};
+  const FetchBench run(draw, {}, 0);
+  EXPECT_EQ(run.indices.memory.requests().size(), 3u);
+}
+
+// Two clocks a triangle: vertices 4 5 6 are asked for in 15.
+TEST(VertexFetch, ATriangleTakesWholeClocks) {
+  testing::TestDraw draw = two_quads();
+  Machine::Fetch spec;
+  spec.indices_per_clock = 2;
+  const FetchBench run(draw, spec, 0);
+  ASSERT_EQ(run.vertices.memory.requests().size(), 4u);
+  EXPECT_EQ(run.vertices.memory.requests()[2].first, 16u);
+}
+
 }  // namespace
 }  // namespace splatscope::sim

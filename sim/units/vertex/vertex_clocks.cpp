@@ -1,4 +1,4 @@
-#include "sim/units/vertex/throughput.h"
+#include "sim/units/vertex/vertex_clocks.h"
 
 #include <algorithm>
 #include <deque>
