@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdint>
 #include <future>
@@ -11,6 +12,7 @@
 #include "model/error.h"
 #include "studies/own_program.h"
 #include "studies/reference_comparison.h"
+#include "studies/result_files.h"
 #include "studies/run.h"
 #include "studies/run_files.h"
 #include "studies/run_observers.h"
@@ -114,6 +116,14 @@ void expect_apart(const Options& options, std::vector<traces::NamedFile> files) 
   studies::expect_apart_from_results(files, options.out);
 }
 
+// What a run left in its folder; of a trace of many frames only how many.
+std::string names_of_files(const std::string& folder) {
+  constexpr std::size_t kMostNames = 12;
+  const std::vector<std::string> files = studies::earlier_results(folder);
+  return files.size() > kMostNames ? fmt::format("{} files", files.size())
+                                   : fmt::format("{}", fmt::join(files, ", "));
+}
+
 // That the fidelity can write the files that are asked for. A seed may be given to any: one that takes no
 // samples gives the same result by every seed.
 void expect_used(const Options& options, studies::Fidelity fidelity) {
@@ -172,9 +182,7 @@ void run(const Options& options, bool quiet) {
   print(input, machine, result);
   for (const std::string& line : replaced) std::cout << "  " << line << '\n';
   if (result.reference) print(result.reference->comparison);
-  std::cout << fmt::format("  frame.png, frame.exr, depth.exr, {}results.json and report.html in {}\n",
-                           result.reference ? "reference.exr, reference.png, difference.png, " : "",
-                           options.out);
+  std::cout << fmt::format("  {} and results.json in {}\n", names_of_files(options.out), options.out);
   for (const std::string& line : observed) std::cout << "  " << line << '\n';
 }
 

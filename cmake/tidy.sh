@@ -37,13 +37,13 @@ awk -F'\t' -v together=12 '
     close(file)
   }
   function fits(group,   name) {
-    if (flags[group] != $3 || size[group] == together) return 0
+    if (flags[group] != $3 || size[group] == together || is_test[group] != ($1 ~ /_test\.cpp$/)) return 0
     for (name in names) if ((group, name) in taken) return 0
     return 1
   }
   { read_names($1)
     for (group = 1; group <= groups && !fits(group); ++group) {}
-    if (group > groups) { groups = group; flags[group] = $3 }
+    if (group > groups) { groups = group; flags[group] = $3; is_test[group] = ($1 ~ /_test\.cpp$/) }
     ++size[group]
     for (name in names) taken[group, name]
     print group "\t" $0 }

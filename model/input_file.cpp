@@ -10,39 +10,64 @@
 namespace splatscope {
 namespace {
 
-// The most dots between the parts of one key ("a.b.c") in the line that begins at `text`: not those in
-// strings and comments. A number has one at most.
-std::size_t dots_of_key(std::string_view text) {
-  constexpr std::string_view kAroundKeys = "=,[]{}";
-  std::size_t dots = 0, most = 0;
-  char quote = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n' || (c == '#' && quote == 0)) break;
-    if (c == '\\' && quote == '"') {
-      ++i;  // an escaped quote ends no string
-    } else if (c == quote) {
-      quote = 0;
-    } else if (quote == 0) {
-      if (c == '"' || c == '\'') quote = c;
-      if (c == '.') most = std::max(most, ++dots);
-      if (kAroundKeys.find(c) != std::string_view::npos) dots = 0;
+// The parser makes a table for each part of a dotted key ("a.b.c"), and tables are taken down from the
+// outside in, by recursion: a key of a hundred thousand parts would overflow the stack. Of what TOML is, this
+// knows what can hold a dot: strings, comments and numbers, which have one at most.
+class KeyDepthCheck {
+ public:
+  KeyDepthCheck(std::string_view text, std::string_view file) : text_(text), file_(file) {}
+
+  void run() {
+    for (; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '\n') ++line_;
+      quote_ == 0 ? outside_of_strings() : in_a_string();
     }
   }
-  return most;
-}
 
-// The parser makes a table for each part of a dotted key, and tables are taken down from the outside in, by
-// recursion: a key of a hundred thousand parts would overflow the stack.
-void check_depth(std::string_view text, std::string_view file) {
-  constexpr std::size_t kMostDots = 64;
-  int line = 1;
-  for (std::size_t at = 0; at < text.size(); ++line) {
-    if (dots_of_key(text.substr(at)) > kMostDots)
-      throw UserError(file, line, "a key of too many parts, expected TOML of a table and a key");
-    at = std::min(text.find('\n', at), text.size() - 1) + 1;
+ private:
+  static constexpr std::size_t kMostDots = 64;
+
+  bool three_quotes() const {
+    return at_ + 2 < text_.size() && text_[at_ + 1] == text_[at_] && text_[at_ + 2] == text_[at_];
   }
-}
+
+  void outside_of_strings() {
+    constexpr std::string_view kAroundKeys = "=,[]{}\n";
+    const char c = text_[at_];
+    if (c == '#') {
+      at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
+    } else if (c == '"' || c == '\'') {
+      quote_ = c;
+      has_lines_ = three_quotes();
+      if (has_lines_) at_ += 2;
+    } else if (c == '.' && ++dots_ > kMostDots) {
+      throw UserError(file_, line_, "a key of too many parts, expected TOML of a table and a key");
+    } else if (kAroundKeys.find(c) != std::string_view::npos) {
+      dots_ = 0;
+    }
+  }
+
+  void in_a_string() {
+    const char c = text_[at_];
+    if (c == '\\' && quote_ == '"') {
+      if (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') ++at_;  // an escaped quote ends no string
+    } else if (c == '\n' && !has_lines_) {
+      quote_ = 0;  // no TOML, as the parser will say
+      dots_ = 0;
+    } else if (c == quote_ && (!has_lines_ || three_quotes())) {
+      if (has_lines_) at_ += 2;
+      for (int own = 0; has_lines_ && own < 2 && at_ + 1 < text_.size() && text_[at_ + 1] == c; ++own)
+        ++at_;  // quotes before the closing three are the string's
+      quote_ = 0;
+    }
+  }
+
+  std::string_view text_, file_;
+  std::size_t at_ = 0, dots_ = 0;
+  int line_ = 1;
+  char quote_ = 0;          // of the string that is open; 0: none
+  bool has_lines_ = false;  // three quotes began it
+};
 
 }  // namespace
 
@@ -68,7 +93,7 @@ std::string toml_string(const std::string& text) {
 }
 
 toml::table parse_toml(std::string_view text, std::string_view file) {
-  check_depth(text, file);
+  KeyDepthCheck(text, file).run();
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {

@@ -27,7 +27,7 @@ TEST(InputFile, NumbersOnALineAreNoPartsOfAKey) {
 }
 
 TEST(InputFile, KeysOfTooManyPartsAreRefused) {
-  const std::string key = "a" + repeated(".a", 100);
+  const std::string key = fmt::format("a{}", repeated(".a", 100));
   for (const std::string& text :
        {fmt::format("{} = 1\n", key), fmt::format("[{}]\n", key), fmt::format("[[{}]]\n", key),
         fmt::format("x = {{ y = 0.5, {} = 1 }}\n", key), fmt::format("a{} = 1\n", repeated(".\"b\"", 100))}) {
@@ -37,9 +37,27 @@ TEST(InputFile, KeysOfTooManyPartsAreRefused) {
   }
 }
 
+TEST(InputFile, AStringOfSeveralLinesHidesNoKeyAndIsNone) {
+  const std::string key = fmt::format("a{}", repeated(".a", 100)), dots = repeated(".", 100);
+  for (const char* quotes : {"\"\"\"", "'''"}) {
+    EXPECT_EQ(toml_error(fmt::format("x = {0}\n{1}\n{1}{0}\n", quotes, dots)), "no error");
+    for (const std::string& text :
+         {fmt::format("x = {{ y = {0}a{0}, {1} = 1 }}\n", quotes, key),
+          fmt::format("x = {{ y = {0}a{2}{2}{0}, {1} = 1 }}\n", quotes, key, quotes[0]),
+          fmt::format("x = {{ y = {0}{0}, {1} = 1 }}\n", quotes, key)}) {
+      EXPECT_EQ(toml_error(text), "a.toml:1: a key of too many parts, expected TOML of a table and a key")
+          << text;
+    }
+    EXPECT_EQ(toml_error(fmt::format("x = {{ y = {0}\n{0}, {1} = 1 }}\n", quotes, key)),
+              "a.toml:2: a key of too many parts, expected TOML of a table and a key");
+  }
+}
+
 TEST(InputFile, StringsOfTomlHoldAnyPath) {
-  for (const std::string path : {"a b", "it's", "say \"so\"", "back\\slash", "both ' and \"", "new\nline", "\u00e9"})
-    EXPECT_EQ(parse_toml(fmt::format("x = {}\n", toml_string(path)), "a.toml")["x"].value<std::string>(), path);
+  for (const std::string path :
+       {"a b", "it's", "say \"so\"", "back\\slash", "both ' and \"", "new\nline", "\u00e9"})
+    EXPECT_EQ(parse_toml(fmt::format("x = {}\n", toml_string(path)), "a.toml")["x"].value<std::string>(),
+              path);
 }
 
 }  // namespace

@@ -24,6 +24,22 @@ sim::Result result() {
   return made;
 }
 
+// AGP counts clocks of its own, and a rate is of all frames.
+TEST(Roofline, TheBusHasItsOwnClock) {
+  Machine machine;
+  machine.clock.core_megahertz = 100;
+  machine.clock.bus_megahertz = 50;
+  machine.agp.bytes_per_clock = 16;
+  sim::Result two_frames = result();
+  two_frames.frame_cycles = {400, 600};
+  two_frames.statistics.push_back({"agp", "data_clocks", "", "", 50});
+  const Ceiling bus = ceilings(machine, two_frames)[3];
+  EXPECT_EQ(800, bus.demand);
+  EXPECT_DOUBLE_EQ(800e6, bus.peak);
+  EXPECT_DOUBLE_EQ(0.1, bus.share);  // 50 clocks of 500 in 10 us
+  EXPECT_DOUBLE_EQ(2e6, bus.fps);    // twice in the time of 50 clocks
+}
+
 TEST(Roofline, CountsWhatTheRunAskedFor) {
   Machine machine;
   machine.clock.core_megahertz = 100;

@@ -43,7 +43,7 @@ std::string text_of(const Vec4& value) {
 int number_of(const std::string& text) {
   const auto number = traces::number_of<int>(text);
   if (!number || *number < 1)
-    throw std::invalid_argument(fmt::format("'{}', expected a whole number from 1 on", text));
+    throw std::invalid_argument(fmt::format("'{}', expected a whole number from 1 to 2147483647", text));
   return *number;
 }
 

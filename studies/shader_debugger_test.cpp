@@ -100,7 +100,7 @@ TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
   };
   EXPECT_EQ(error_of("step\nprint r7\n"), "commands:2: the program writes no r7, expected oPos, r0");
   EXPECT_EQ(error_of("jump\n").substr(0, 32), "commands:1: 'jump' is no command");
-  EXPECT_EQ(error_of("step x\n"), "commands:1: 'x', expected a whole number from 1 on");
+  EXPECT_EQ(error_of("step x\n"), "commands:1: 'x', expected a whole number from 1 to 2147483647");
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class Parser {
   // Between statements: the end of a line, or the '+' of the next one.
   void expect_line_end() {
     lexer_.skip_blanks();
-    if (!lexer_.at_line_end() && lexer_.peek() != '+') fail_expecting(here(), "the end of the line");
+    if (!lexer_.at_line_end() && lexer_.peek() != '+') fail_expecting("the end of the line");
     lexer_.skip_blank_lines();
   }
 
@@ -65,7 +65,7 @@ class Parser {
     if (coissue) lexer_.skip_blank_lines();
     const Place where = here();
     const std::string word = lexer_.word();
-    if (word.empty()) fail_expecting(where, "an instruction");
+    if (word.empty()) fail_expecting("an instruction");
     if (word == "def" && !coissue) return parse_definition(where);
     if ((word == "dcl" || word.starts_with("dcl_")) && !coissue) return parse_declaration(where, word);
     parse_instruction(where, word, coissue);
@@ -82,9 +82,8 @@ class Parser {
     definition.index = static_cast<std::uint16_t>(name->index);
     for (float& value : definition.values) {
       expect_comma();
-      const Place number_at = here();
       const auto number = lexer_.number();
-      if (!number) fail_expecting(number_at, "a number of 32 bits");
+      if (!number) fail_expecting("a number of 32 bits");
       value = *number;
     }
     program_.definitions.push_back(definition);
@@ -209,7 +208,7 @@ class Parser {
     const Place where = here();
     std::string word = lexer_.word();
     if (word == "1" && program_.version.kind == ShaderKind::pixel && !source.negate) {
-      if (!lexer_.accept('-')) fail_expecting(here(), "'-' and a register behind the 1");
+      if (!lexer_.accept('-')) fail_expecting("'-' and a register behind the 1");
       source.modifier = SourceModifier::invert;
       lexer_.skip_blanks();
       word = lexer_.word();
@@ -256,7 +255,7 @@ class Parser {
       }
     } while (lexer_.accept('+'));
     source.index = static_cast<std::uint16_t>(index);
-    if (!lexer_.accept(']')) fail_expecting(here(), "']'");
+    if (!lexer_.accept(']')) fail_expecting("']'");
   }
 
   void apply_source_modifier(Place where, std::string_view suffix, Source& source) {
@@ -265,12 +264,14 @@ class Parser {
         {"bias", bias}, {"bx2", bx2}, {"x2", x2}, {"dz", dz}, {"db", dz}, {"dw", dw}, {"da", dw}};
     const auto found =
         std::ranges::find(kModifiers, suffix, &std::pair<std::string_view, SourceModifier>::first);
-    if (program_.version.kind != ShaderKind::pixel || found == std::end(kModifiers) ||
-        source.modifier != none)
+    if (program_.version.kind != ShaderKind::pixel || found == std::end(kModifiers))
       lexer_.fail(where,
                   fmt::format("'_{}' is not a source modifier here, expected one of _bias _bx2 _x2 _dz _dw "
                               "in a pixel program",
                               suffix));
+    if (source.modifier != none)
+      lexer_.fail(where,
+                  fmt::format("'_{}' beside another modifier of the source, expected one alone", suffix));
     const bool divides = found->second == dz || found->second == dw;
     if (divides && source.negate)
       lexer_.fail(where, fmt::format("'_{}' cannot be combined with negation", suffix));
@@ -290,10 +291,11 @@ class Parser {
   }
 
   void expect_comma() {
-    if (!lexer_.accept(',')) fail_expecting(here(), "',' and another operand");
+    if (!lexer_.accept(',')) fail_expecting("',' and another operand");
   }
 
-  [[noreturn]] void fail_expecting(Place where, std::string_view expected) {
+  [[noreturn]] void fail_expecting(std::string_view expected) {
+    const Place where = here();
     lexer_.fail(where, fmt::format("{}, expected {}", lexer_.found(), expected));
   }
   // "'word' is not a register"
@@ -302,7 +304,7 @@ class Parser {
   }
   [[noreturn]] void fail_for_register(Place where, std::string_view word) {
     const std::string expected = fmt::format("a register of {}", to_string(program_.version));
-    if (word.empty()) fail_expecting(where, expected);
+    if (word.empty()) fail_expecting(expected);
     lexer_.fail(where, is_not(word, expected));
   }
 

@@ -103,6 +103,15 @@ TEST(Assembler, ErrorsNameFileLineColumnAndRule) {
       error_of("vs_1_1\nmov oPos, v0_x3\n"),
       "a.vs:2:11: '_x3' is not a source modifier here, expected one of _bias _bx2 _x2 _dz _dw in a pixel "
       "program");
+  EXPECT_EQ(error_of("ps_1_1\nmov r0, 1-v0_bx2\n"),
+            "a.vs:2:9: '_bx2' beside another modifier of the source, expected one alone");
+  EXPECT_EQ(error_of("ps_1_1\nmov r0, 1-\n"), "a.vs:2:11: the line ends here, expected a register of ps_1_1");
+  EXPECT_EQ(error_of("vs_1_1\ndef c0, 1, -1e99, 0, 0\n"),
+            "a.vs:2:13: '1e99' stands here, expected a number of 32 bits");
+  EXPECT_EQ(error_of(std::string("vs_1_1\nmov oPos, v0 \0 x\n", 24)),
+            "a.vs:2:14: the byte 0x00 stands here, expected the end of the line");
+  EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0 \u00e9\n"),
+            "a.vs:2:14: the byte 0xc3 stands here, expected the end of the line");
 }
 
 TEST(Assembler, UsagesHaveAnIndexFrom0To15) {

@@ -121,9 +121,10 @@ std::string Lexer::version_word() {
 
 std::string Lexer::found() const {
   if (at_line_end()) return "the line ends here";
+  if (const auto byte = static_cast<unsigned char>(peek()); byte <= ' ' || byte > '~')
+    return fmt::format("the byte 0x{:02x} stands here", byte);
   std::size_t end = position_;
-  const auto continues = [](char c) { return is_word(c) || (c & 0x80) != 0; };  // UTF-8, too
-  while (end < text_.size() && continues(text_[end])) ++end;
+  while (end < text_.size() && is_word(text_[end])) ++end;
   const std::size_t shown = std::clamp<std::size_t>(end - position_, 1, kLongestShown);
   return fmt::format("'{}' stands here", std::string_view(text_).substr(position_, shown));
 }

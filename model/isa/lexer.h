@@ -29,7 +29,7 @@ class Lexer {
   bool accept(char wanted);    // blanks, then `wanted`: consumed where it is there
   std::string word();          // letters, digits, '_'; may be empty
   std::string version_word();  // the same and '.'
-  std::string found() const;   // for messages: "'word' stands here", "the line ends here"
+  std::string found() const;   // for messages: "'word' stands here", "the line ends here"; ASCII
 
   // A number as `def` takes it: decimal, optional sign, exponent and 'f'. Nothing where there is none or
   // where it does not fit a binary32.

@@ -137,10 +137,9 @@ TEST(Timeline, ShowsTheWindowAlone) {
   }
   EXPECT_GT(shown, 10u);
   EXPECT_LT(shown, Json::parse(all.timeline).at("traceEvents").size());
+  auto tracks = cycles_of(observe(7, {.first = first, .last = last}).timeline);
   Cycle commands = 0;  // they follow each other without a gap
-  for (const auto& [name, sum] :
-       cycles_of(observe(7, {.first = first, .last = last}).timeline).at("commands"))
-    commands += sum;
+  for (const auto& [name, sum] : tracks.at("commands")) commands += sum;
   EXPECT_EQ(last - first + 1, commands);
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 #include "studies/reference_comparison.h"
 #include "studies/report/block_diagram.h"
@@ -43,8 +45,10 @@ void add_times(Report& report, const sim::Result& timing) {
   std::vector<std::vector<std::string>> rows;
   for (const sim::Cycle cycles : timing.frame_cycles) {
     const std::size_t frame = rows.size();
+    const double half_width = timing.frame_plus_minus.empty() ? 0 : timing.frame_plus_minus[frame];
     const std::string plus_minus =
-        timing.frame_plus_minus.empty() ? "" : fmt::format(" ± {:.0f}", timing.frame_plus_minus[frame]);
+        half_width > 0 ? fmt::format(" ± {}", grouped(static_cast<std::uint64_t>(std::llround(half_width))))
+                       : "";
     rows.push_back({fmt::format("{}", frame), grouped(cycles) + plus_minus,
                     fmt::format("{:.3f}", 1000 * timing.seconds_of(cycles)),
                     fmt::format("{:.2f}", timing.frames_per_second(cycles))});

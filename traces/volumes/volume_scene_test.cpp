@@ -85,7 +85,7 @@ TEST(VolumeScene, SaysWhatIsWrong) {
             "none.nrrd: cannot be read, expected a NRRD file");
   for (const auto& [points, wrong] :
        {std::pair("[{ value = 1, opacity = 2, color = [0, 0, 0] }]", "2: volume.transfer[0] is { color = "),
-        {"[{ value = 1 }]", "2: volume.transfer[0] is { value = 1 }, expected an array of { value, "},
+        {"[{ value = 1 }]", "2: volume.transfer[0] is { value = 1 }, expected { value, opacity, "},
         {"3", "2: volume.transfer is 3, "},
         {"[3]", "2: volume.transfer[0] is 3, "},
         {"[{ value = nan, opacity = 0, color = [0, 0, 0] }]", "2: volume.transfer[0] is "},
@@ -307,7 +307,7 @@ TEST_F(VolumeKinds, SaysWhatIsWrong) {
   const std::string file = "file = \"values.nrrd\"\n";
   EXPECT_EQ(error(file + "x = [0, 1]\n"), "s.toml:3: volume.x has 2 places, expected 5, one for each voxel");
   EXPECT_EQ(error(file + "y = [0, 2, 1, 3]\n"),
-            "s.toml:3: volume.y[2] is 1, expected an array of rising numbers from -1e+09 to 1e+09");
+            "s.toml:3: volume.y[2] is 1, expected a number from -1e+09 to 1e+09, above the one before it");
   EXPECT_EQ(error(file + "x = [0, 1, 2, 3, 4]\npositions = \"places.nrrd\"\n"),
             "s.toml:4: volume.positions beside volume.x, y or z, expected the one or the other");
   EXPECT_EQ(error("generator = \"constant\"\nvoxels = [5, 4, 2]\npositions = \"places.nrrd\"\n"),
