@@ -12,7 +12,6 @@
 #include "model/error.h"
 #include "studies/own_program.h"
 #include "studies/reference_comparison.h"
-#include "studies/result_files.h"
 #include "studies/run.h"
 #include "studies/run_files.h"
 #include "studies/run_observers.h"
@@ -74,11 +73,9 @@ void print(const studies::Input& input, const Machine& machine, const studies::F
     std::cout << "  warning: no triangle covers a pixel, so nothing is drawn and the picture is what it was "
                  "cleared to\n";
   if (!run.timing) return;
-  const std::size_t frames = run.timing->frame_cycles.size();
-  const double plus_minus = run.timing->cycles_plus_minus;
-  std::cout << fmt::format("  {}{}{} cycles, {:.2f} ms, {:.1f} frames a second\n",
-                           frames == 1 ? "" : fmt::format("{} frames together: ", frames), run.timing->cycles,
-                           plus_minus > 0 ? fmt::format(" +- {:.0f}", plus_minus) : "",
+  std::cout << fmt::format("  {}, {:.2f} ms, {:.1f} frames a second\n",
+                           studies::text_of_cycles(run.timing->frame_cycles.size(), run.timing->cycles,
+                                                   run.timing->cycles_plus_minus),
                            1000 * run.timing->seconds, run.timing->frames_per_second());
   for (const auto& unit : run.timing->units_left_out)
     std::cout << fmt::format("  left out: {}: {}\n", unit.name, unit.why);
@@ -116,10 +113,9 @@ void expect_apart(const Options& options, std::vector<traces::NamedFile> files) 
   studies::expect_apart_from_results(files, options.out);
 }
 
-// What a run left in its folder; of a trace of many frames only how many.
-std::string names_of_files(const std::string& folder) {
+// Of a trace of many frames only how many.
+std::string listed(const std::vector<std::string>& files) {
   constexpr std::size_t kMostNames = 12;
-  const std::vector<std::string> files = studies::earlier_results(folder);
   return files.size() > kMostNames ? fmt::format("{} files", files.size())
                                    : fmt::format("{}", fmt::join(files, ", "));
 }
@@ -178,11 +174,11 @@ void run(const Options& options, bool quiet) {
     result.reference = {std::move(*reference), comparison};
   }
   const std::vector<std::string> observed = observers.commit(result.timing ? result.timing->cycles : 0);
-  studies::write_run(input, machine, fidelity, result, files);
+  const std::vector<std::string> written = studies::write_run(input, machine, fidelity, result, files);
   print(input, machine, result);
   for (const std::string& line : replaced) std::cout << "  " << line << '\n';
   if (result.reference) print(result.reference->comparison);
-  std::cout << fmt::format("  {} and results.json in {}\n", names_of_files(options.out), options.out);
+  std::cout << fmt::format("  {} in {}\n", listed(written), options.out);
   for (const std::string& line : observed) std::cout << "  " << line << '\n';
 }
 

@@ -33,11 +33,9 @@ void print(const studies::Sweep& sweep) {
   for (const studies::SweepPoint& point : sweep.points) {
     std::string settings;
     for (const auto& [key, value] : point.settings) settings += fmt::format("{}={}  ", key, value);
-    const std::size_t frames = point.results["frames"].size();
     std::cout << fmt::format(
-        "{}{}{}{} cycles  {:.2f} fps\n", settings,
-        frames == 1 ? "" : fmt::format("{} frames together: ", frames), point.cycles,
-        point.cycles_plus_minus > 0 ? fmt::format(" +- {:.0f}", point.cycles_plus_minus) : "",
+        "{}{}  {:.2f} fps\n", settings,
+        studies::text_of_cycles(point.results["frames"].size(), point.cycles, point.cycles_plus_minus),
         point.rate.fps);
   }
   for (const auto& path : sweep.damaged)

@@ -8,7 +8,6 @@
 
 #include "model/error.h"
 #include "model/testing/error_of.h"
-#include "sim/machine.h"
 #include "sim/testing/random_trace.h"
 #include "sim/units/vertex/vertex_clocks.h"
 
@@ -493,31 +492,6 @@ TEST(Simulate, EachDrawReadsItsTextureAnew) {
   made.work[1].command = 2;
   const Result twice = simulate(made.trace, made.work, machine);
   EXPECT_EQ(statistic(twice, "texture", "misses"), 2 * statistic(once, "texture", "misses"));
-}
-
-TEST(Simulate, ADrawKnowsWhereItsIndicesAndTexelsLie) {
-  RandomTrace made = simple_trace(2);
-  made.trace.surfaces = 2;
-  Draw& draw = std::get<Draw>(made.trace.commands[1]);
-  draw.first_index = 30;
-  const Machine machine = machine::load(machine::kGeForce4);
-  const MemoryLayout layout = lay_out(made.trace, machine);
-  const auto job = [&] { return prepare_draws(made.trace, machine, layout).jobs[0]; };
-  EXPECT_EQ(job().vertex_address, layout.buffers[0]);
-  EXPECT_EQ(job().index_address, layout.buffers[1] + 60);
-  EXPECT_EQ(job().texture_address, layout.textures[0]);
-  draw.source = 2;
-  EXPECT_EQ(job().texture_address, layout.color_address + 2 * layout.color.bytes());
-}
-
-TEST(Simulate, ACycleOfTheBusIsTheCoresThatBeginsWithItOrNext) {
-  Machine machine;
-  machine.clock.core_megahertz = 100;
-  machine.clock.bus_megahertz = 50;
-  EXPECT_EQ(SimulatedMachine(machine, Scheduler::skip_ahead).core_cycle(7), 14u);
-  machine.clock.bus_megahertz = 40;
-  EXPECT_EQ(SimulatedMachine(machine, Scheduler::skip_ahead).core_cycle(3), 8u);
-  EXPECT_EQ(SimulatedMachine(machine, Scheduler::skip_ahead).core_cycle(0), 0u);
 }
 
 }  // namespace

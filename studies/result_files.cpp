@@ -58,7 +58,7 @@ fs::path ResultFiles::place(const std::string& name) const {
   return unfinished_ / name;
 }
 
-void ResultFiles::commit(nlohmann::ordered_json results, int indent) {
+std::vector<std::string> ResultFiles::commit(nlohmann::ordered_json results, int indent) {
   std::vector<std::string> names;
   if (fs::exists(unfinished_)) {
     for (const auto& file : fs::directory_iterator(unfinished_))
@@ -71,6 +71,7 @@ void ResultFiles::commit(nlohmann::ordered_json results, int indent) {
   for (const std::string& name : names) const traces::OutputFile probe(folder_ / name);
   remove_earlier_results(folder_);
   for (const std::string& name : names) fs::rename(unfinished_ / name, folder_ / name);
+  return names;
 }
 
 }  // namespace splatscope::studies

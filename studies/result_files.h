@@ -29,9 +29,9 @@ class ResultFiles {
   // Where to write the file called `name` meanwhile. May be called from several threads.
   std::filesystem::path place(const std::string& name) const;
   // Writes `results` and the `files` as results.json, with so many spaces a level, and puts all in the place
-  // of what an earlier command left. Throws UserError where one of the files has no place, and then changes
-  // nothing.
-  void commit(nlohmann::ordered_json results, int indent = 1);
+  // of what an earlier command left. Returns their names, results.json last. Throws UserError where one of
+  // the files has no place, and then changes nothing.
+  std::vector<std::string> commit(nlohmann::ordered_json results, int indent = 1);
 
  private:
   std::filesystem::path folder_;

@@ -110,6 +110,11 @@ Rate rate_of(const sim::Result& timing) {
   return {timing.frames_per_second(), bottleneck.unit, timing.share(bottleneck.busy)};
 }
 
+std::string text_of_cycles(std::size_t frames, std::uint64_t cycles, double plus_minus) {
+  return fmt::format("{}{}{} cycles", frames == 1 ? "" : fmt::format("{} frames together: ", frames), cycles,
+                     plus_minus > 0 ? fmt::format(" +- {:.0f}", plus_minus) : "");
+}
+
 std::string text_of_rate(const Rate& rate) {
   return fmt::format("{:.2f} ({})", rate.fps, rate.bottleneck);
 }

@@ -103,6 +103,8 @@ struct Rate {
   double share = 0;  // of the frame, 0 to 1
 };
 Rate rate_of(const sim::Result& timing);
+// "123 cycles", "3 frames together: 123 +- 4 cycles".
+std::string text_of_cycles(std::size_t frames, std::uint64_t cycles, double plus_minus);
 // For tables: "24.99 (vertex0)", frames a second and the unit; "vertex0 (99 % busy)".
 std::string text_of_rate(const Rate& rate);
 std::string text_of_bottleneck(const Rate& rate);

@@ -229,8 +229,8 @@ OnFrame earlier_frames_writer(const Trace& trace, const ResultFiles& files) {
   };
 }
 
-void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
-               ResultFiles& files) {
+std::vector<std::string> write_run(const Input& input, const Machine& machine, Fidelity fidelity,
+                                   const FrameRun& run, ResultFiles& files) {
   const nlohmann::ordered_json results = results_of(input, machine, fidelity, run);
   const Image picture = picture_of(run.rendered.frame);
   // Side by side: to compress them takes longer than many a frame.
@@ -245,7 +245,7 @@ void write_run(const Input& input, const Machine& machine, Fidelity fidelity, co
         for (const HeatMap& map : run.heat_maps) write_exr(map.image, files.place(map.name + ".exr"), "Y");
       },
       [&] { run_report(input, machine, run, results).write(files.place("report.html")); });
-  files.commit(results);
+  return files.commit(results);
 }
 
 }  // namespace splatscope::studies

@@ -27,8 +27,8 @@ OnFrame earlier_frames_writer(const Trace& trace, const ResultFiles& files);
 
 // Writes frame.exr, frame.png and depth.exr of the last frame, results.json and report.html; where the run
 // has a reference also reference.exr, reference.png and difference.png, and into the results how far the last
-// frame is from it; its heat maps as NAME.exr. Commits `files`.
-void write_run(const Input& input, const Machine& machine, Fidelity fidelity, const FrameRun& run,
-               ResultFiles& files);
+// frame is from it; its heat maps as NAME.exr. Commits `files`, and returns their names.
+std::vector<std::string> write_run(const Input& input, const Machine& machine, Fidelity fidelity,
+                                   const FrameRun& run, ResultFiles& files);
 
 }  // namespace splatscope::studies

@@ -6,7 +6,7 @@ namespace splatscope::studies {
 namespace {
 
 // Each figure is a number of its own, so that no two can change places.
-TEST(RunResults, EveryFigureStandsUnderItsName) {
+Input numbered_input() {
   Input input;
   input.recorded = traces::RecordCounts{.scene_surfels = 1,
                                         .surfels = 2,
@@ -30,6 +30,10 @@ TEST(RunResults, EveryFigureStandsUnderItsName) {
                 .materials_unreadable = 25};
   input.volume =
       traces::VolumeCounts{.splats = 26, .flat = 27, .left_out = 28, .sheets = 29, .vertex_bytes = 30};
+  return input;
+}
+
+FrameRun numbered_run() {
   FrameRun run{.rendered = {Frame(1, 1, {}), {}, {}}, .timing = {}, .heat_maps = {}, .reference = {}};
   run.rendered.counters = {.vertices = 31,
                            .triangles = 32,
@@ -54,7 +58,11 @@ TEST(RunResults, EveryFigureStandsUnderItsName) {
                                     .rounded_to_black = 50}};
   run.host_seconds = 51;
   run.seed = 52;
-  const nlohmann::json results = results_of(input, {}, Fidelity::functional, run);
+  return run;
+}
+
+TEST(RunResults, EveryFigureStandsUnderItsName) {
+  const nlohmann::json results = results_of(numbered_input(), {}, Fidelity::functional, numbered_run());
   EXPECT_EQ(results["surfels"], nlohmann::json::parse(R"({
     "total": 1, "drawn": 2, "normals_estimated": 17, "radii_estimated": 18,
     "blocks": {"drawn": 3, "surfels_by_level": [5, 6], "surfels_outside_frustum": 7, "surfels_facing_away": 8},

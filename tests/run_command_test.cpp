@@ -222,8 +222,12 @@ TEST(CommandLine, ALaterRunTakesTheFolderOver) {
       0);
   EXPECT_EQ(names(), with({"cycles_per_tile.exr", "depth_fails.exr", "difference.png", "overdraw.exr",
                            "reference.exr", "reference.png", "texel_fetches.exr"}));
-  ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);
+  const auto plain = run_program({"run", "small.toml", "--out", "o"}, folder.path());
+  ASSERT_EQ(plain.status, 0);
   EXPECT_EQ(names(), with({}));
+  EXPECT_NE(plain.out.find("  depth.exr, frame.exr, frame.png, report.html, results.json in o\n"),
+            std::string::npos)
+      << plain.out;
   const std::vector<std::string> own{"frame-000.png", "frame-new.png", "overdraw.exr", "reference.png"};
   for (const std::string& name : own) folder.file("o/" + name, "the user's");
   ASSERT_EQ(run_program({"run", "small.toml", "--out", "o"}, folder.path()).status, 0);

@@ -218,6 +218,12 @@ std::string expectation(const SceneKey& key) {
       key.value);
 }
 
+std::string entry_expectation(const SceneKey& key) {
+  if (const auto* places = std::get_if<PlacesValue>(&key.value))
+    return fmt::format("a number from {:g} to {:g}, above the one before it", places->min, places->max);
+  return "{ value, opacity, color }, its value not below the one before it, opacity and color from 0 to 1";
+}
+
 std::string default_text(const SceneKey& key) {
   return std::visit(
       Overloaded{[](const RealValue& v) { return fmt::format("{:g}", v.initial); },

@@ -112,6 +112,8 @@ std::span<const SceneKey> volume_keys();  // those of [volume], which are among 
 
 // "a number from 0 to 10", for messages and documentation.
 std::string expectation(const SceneKey& key);
+// The same of an entry of an array whose length is free.
+std::string entry_expectation(const SceneKey& key);
 
 // "0.73", as it would stand in a scene file.
 std::string default_text(const SceneKey& key);

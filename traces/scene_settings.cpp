@@ -21,9 +21,8 @@ constexpr unsigned kFromPlane = 1, kFromModel = 2, kFromPoints = 4;
 struct Store {
   SceneSettings& settings;
   const toml::node& node;
-  const toml::node* looked_at = &node;  // an entry of `node`, or all of it
-  std::string place_in_node = {};       // "[3]"
-  std::string expected = {};            // there
+  const toml::node* looked_at = &node;          // an entry of `node`, or all of it
+  std::optional<std::size_t> entry_index = {};  // of an entry
 
   bool operator()(const RealValue& v) const {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
@@ -60,9 +59,7 @@ struct Store {
     if (!points) return false;
     std::vector<kernels::TransferPoint>& place = v.place(settings);
     for (const toml::node& entry : *points) {
-      look_at(
-          entry, place.size(),
-          "{ value, opacity, color }, its value not below the one before it, opacity and color from 0 to 1");
+      look_at(entry, place.size());
       const toml::table* point = entry.as_table();
       if (!point || point->size() != 3) return false;
       place.emplace_back();
@@ -81,8 +78,7 @@ struct Store {
     if (!places) return false;
     std::vector<double>& out = v.place(settings);
     for (const toml::node& entry : *places) {
-      look_at(entry, out.size(),
-              fmt::format("a number from {:g} to {:g}, above the one before it", v.min, v.max));
+      look_at(entry, out.size());
       const auto value = entry.is_number() ? entry.value<double>() : std::nullopt;
       if (!value || !(*value >= v.min && *value <= v.max)) return false;
       if (!out.empty() && !(*value > out.back())) return false;
@@ -93,10 +89,9 @@ struct Store {
   bool operator()(const VectorValue& v) const { return numbers(&node, v.min, v.max, v.place(settings)); }
 
  private:
-  void look_at(const toml::node& entry, std::size_t index, std::string wanted) {
+  void look_at(const toml::node& entry, std::size_t index) {
     looked_at = &entry;
-    expected = std::move(wanted);
-    place_in_node = fmt::format("[{}]", index);
+    entry_index = index;
   }
   static bool number(const toml::table& table, std::string_view name, double min, double max, double& out) {
     const toml::node* found = table.get(name);
@@ -168,9 +163,10 @@ void read_table(SceneSettings& settings, std::string_view name, const toml::tabl
     Store store{settings, node};
     if (!std::visit(store, declared->value))
       throw UserError(file, line(*store.looked_at),
-                      fmt::format("{}.{}{} is {}, expected {}", name, key.str(), store.place_in_node,
+                      fmt::format("{}.{}{} is {}, expected {}", name, key.str(),
+                                  store.entry_index ? fmt::format("[{}]", *store.entry_index) : "",
                                   shown(*store.looked_at),
-                                  store.place_in_node.empty() ? expectation(*declared) : store.expected));
+                                  store.entry_index ? entry_expectation(*declared) : expectation(*declared)));
     settings.lines.emplace(fmt::format("{}.{}", name, key.str()), line(key));
   }
 }

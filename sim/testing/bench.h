@@ -155,6 +155,28 @@ struct TestMemory {
   Channel<MemoryRequest> requests;
 };
 
+// When so many requests of each of two clients are answered that begin at once.
+template <class Client, class Server>
+std::vector<std::pair<Cycle, Cycle>> answers_of_two(Client& first, Client& second, Server& server,
+                                                    std::size_t requests) {
+  Bench bench;
+  for (Unit* unit : {static_cast<Unit*>(&first), static_cast<Unit*>(&second), static_cast<Unit*>(&server)})
+    bench.add(*unit);
+  Channel<MemoryRequest> of_first("first", first, server, 16), of_second("second", second, server, 16);
+  server.connect(first.port, of_first);
+  server.connect(second.port, of_second);
+  first.port.connect({&of_first}, 64);
+  second.port.connect({&of_second}, 64);
+  bench.run();
+  std::vector<std::pair<Cycle, Cycle>> answers;
+  for (std::size_t i = 0; i < requests; ++i) {
+    answers.emplace_back(first.port.oldest_ready(), second.port.oldest_ready());
+    first.port.release_oldest();
+    second.port.release_oldest();
+  }
+  return answers;
+}
+
 // A draw of quads of one triangle each; blocks and masks are set by the test.
 struct TestDraw {
   Draw draw;

@@ -57,24 +57,10 @@ TEST(AgpBus, OnlySoManyRequestsAreOnTheBus) {
 }
 
 TEST(AgpBus, ClientsTakeTurns) {
-  testing::Bench bench;
   Client first(2), second(2);
   AgpBus agp("agp", {16, 20, 16}, testing::kPeriod);
-  bench.add(first);
-  bench.add(second);
-  bench.add(agp);
-  Channel<MemoryRequest> of_first("first", first, agp, 16), of_second("second", second, agp, 16);
-  agp.connect(first.port, of_first);
-  agp.connect(second.port, of_second);
-  first.port.connect({&of_first}, 64);
-  second.port.connect({&of_second}, 64);
-  bench.run();
-  for (const Cycle at : {26, 34}) {
-    EXPECT_EQ(first.port.oldest_ready(), at);
-    EXPECT_EQ(second.port.oldest_ready(), at + 4);
-    first.port.release_oldest();
-    second.port.release_oldest();
-  }
+  EXPECT_EQ(testing::answers_of_two(first, second, agp, 2),
+            (std::vector<std::pair<Cycle, Cycle>>{{26, 30}, {34, 38}}));
 }
 
 }  // namespace

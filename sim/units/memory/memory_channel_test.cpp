@@ -183,26 +183,12 @@ TEST(MemoryChannel, OfEqualsTheOldestGoesFirst) {
 
 // Taken in turn and served in order, each two clocks behind the one before.
 TEST(MemoryChannel, ClientsTakeTurns) {
-  Bench bench;
   Client first({{0, 16}, {64, 16}, {128, 16}}), second({{16, 16}, {80, 16}, {144, 16}});
   Machine::Memory in_order = spec();
   in_order.bypass_limit = 0;
   MemoryChannel channel("memory", in_order);
-  bench.add(first);
-  bench.add(second);
-  bench.add(channel);
-  Channel<MemoryRequest> of_first("first", first, channel, 8), of_second("second", second, channel, 8);
-  channel.connect(first.port, of_first);
-  channel.connect(second.port, of_second);
-  first.port.connect({&of_first}, 64);
-  second.port.connect({&of_second}, 64);
-  bench.run();
-  for (const Cycle end : {13, 17, 21}) {
-    EXPECT_EQ(first.port.oldest_ready(), end + 1);
-    EXPECT_EQ(second.port.oldest_ready(), end + 2 + 1);
-    first.port.release_oldest();
-    second.port.release_oldest();
-  }
+  EXPECT_EQ(testing::answers_of_two(first, second, channel, 3),
+            (std::vector<std::pair<Cycle, Cycle>>{{14, 16}, {18, 20}, {22, 24}}));
 }
 
 }  // namespace
