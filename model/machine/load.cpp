@@ -51,7 +51,9 @@ std::string known_keys(std::string_view group) {
 
 std::string range_of(const Parameter& parameter) {
   struct Text {
-    std::string operator()(const IntegerField& f) const { return fmt::format("{} to {}", f.least, f.most); }
+    std::string operator()(const IntegerField& f) const {
+      return fmt::format("{} to {}{}", f.least, f.most, f.power_of_two ? ", a power of two" : "");
+    }
     std::string operator()(const RealField& f) const { return fmt::format("{:g} to {:g}", f.least, f.most); }
     std::string operator()(const SwitchField&) const { return "true or false"; }
     std::string operator()(const ChoiceField& f) const {
@@ -80,6 +82,7 @@ void assign(Machine& machine, const Parameter& parameter, const toml::node& valu
     if (!value.is_integer()) refuse("has the wrong type");
     const std::int64_t number = value.as_integer()->get();
     if (number < field->least || number > field->most) refuse(fmt::format("is out of range ({})", number));
+    if (field->power_of_two && (number & (number - 1)) != 0) refuse(fmt::format("is {}", number));
     field->of(machine) = static_cast<int>(number);
   } else if (const auto* field = std::get_if<RealField>(&parameter.field)) {
     if (!value.is_number()) refuse("has the wrong type");
@@ -168,31 +171,8 @@ Place set_by(const Machine& machine, std::initializer_list<std::string_view> nam
   return place;
 }
 
-// Sizes that address arithmetic splits by bits, and groups of parameters that must fit together. `file` gave
-// those that no option set.
+// Groups of parameters that must fit together. `file` gave those that no option set.
 void check_together(const Machine& machine, std::string_view file) {
-  const std::pair<std::string_view, int> powers[] = {
-      {"fetch.line_bytes", machine.fetch.line_bytes},
-      {"fetch.cache_lines", machine.fetch.cache_lines},
-      {"depth.cache_lines", machine.depth.cache_lines},
-      {"depth.cache_ways", machine.depth.cache_ways},
-      {"texture.cache_lines", machine.texture.cache_lines},
-      {"texture.cache_ways", machine.texture.cache_ways},
-      {"texture.line_bytes", machine.texture.line_bytes},
-      {"texture.fill_bytes", machine.texture.fill_bytes},
-      {"blend.cache_lines", machine.blend.cache_lines},
-      {"blend.cache_ways", machine.blend.cache_ways},
-      {"memory.channels", machine.memory.channels},
-      {"memory.burst_bytes", machine.memory.burst_bytes},
-      {"memory.interleave_bytes", machine.memory.interleave_bytes},
-      {"memory.banks", machine.memory.banks},
-      {"memory.row_bytes", machine.memory.row_bytes},
-      {"memory.channel_bytes_per_clock", machine.memory.channel_bytes_per_clock},
-  };
-  for (const auto& [name, value] : powers) {
-    if ((value & (value - 1)) == 0) continue;
-    set_by(machine, {name}, file).fail(fmt::format("{} is {}, expected a power of two", name, value));
-  }
   const std::tuple<std::string_view, int, std::string_view, int> pairs[] = {
       {"fetch.line_bytes", machine.fetch.line_bytes, "memory.interleave_bytes",
        machine.memory.interleave_bytes},

@@ -16,6 +16,11 @@ IntegerField integer(int least, int most) {
 }
 
 template <auto Group, auto Member>
+IntegerField power_of_two(int least, int most) {
+  return {&member<Group, Member>, least, most, true};
+}
+
+template <auto Group, auto Member>
 RealField real(double least, double most) {
   return {&member<Group, Member>, least, most};
 }
@@ -88,10 +93,10 @@ std::vector<Parameter> geometry_parameters() {
        "entries of the post-transform FIFO that an index can hit"},
       {"vertex.output_vertices", "vertices", integer<&M::vertex, &M::Vertex::output_vertices>(1, 64),
        "finished vertices of a unit that can wait for primitive assembly"},
-      {"fetch.line_bytes", "bytes", integer<&M::fetch, &M::Fetch::line_bytes>(16, 256),
-       "one read of indices or vertices (a power of two)"},
-      {"fetch.cache_lines", "lines", integer<&M::fetch, &M::Fetch::cache_lines>(4, 1024),
-       "lines of vertices kept (a power of two)"},
+      {"fetch.line_bytes", "bytes", power_of_two<&M::fetch, &M::Fetch::line_bytes>(16, 256),
+       "one read of indices or vertices"},
+      {"fetch.cache_lines", "lines", power_of_two<&M::fetch, &M::Fetch::cache_lines>(4, 1024),
+       "lines of vertices kept"},
       {"fetch.pending_vertices", "vertices", integer<&M::fetch, &M::Fetch::pending_vertices>(1, 1024),
        "read ahead, waiting for their lines"},
       {"fetch.index_lines", "lines", integer<&M::fetch, &M::Fetch::index_lines>(1, 64),
@@ -122,10 +127,9 @@ std::vector<Parameter> pixel_parameters() {
        "through the rasteriser"},
       {"raster.queue", "quads", integer<&M::raster, &M::Raster::queue>(1, 1024),
        "quads in and behind the rasteriser"},
-      {"depth.cache_lines", "lines", integer<&M::depth, &M::Depth::cache_lines>(4, 65536),
-       "depth cache, lines of 4x4 pixels (a power of two)"},
-      {"depth.cache_ways", "ways", integer<&M::depth, &M::Depth::cache_ways>(1, 16),
-       "its ways (a power of two)"},
+      {"depth.cache_lines", "lines", power_of_two<&M::depth, &M::Depth::cache_lines>(4, 65536),
+       "depth cache, lines of 4x4 pixels"},
+      {"depth.cache_ways", "ways", power_of_two<&M::depth, &M::Depth::cache_ways>(1, 16), "its ways"},
       {"depth.pending", "quads", integer<&M::depth, &M::Depth::pending>(1, 4096),
        "quads waiting for their lines"},
       {"depth.latency", "clocks", integer<&M::depth, &M::Depth::latency>(1, 256), "through the depth test"},
@@ -133,14 +137,13 @@ std::vector<Parameter> pixel_parameters() {
        "quads in and behind the depth test"},
       {"depth.fast_clear", "", on_off<&M::depth, &M::Depth::fast_clear>(),
        "a clear marks depth lines as cleared in place of writing them"},
-      {"texture.cache_lines", "lines", integer<&M::texture, &M::Texture::cache_lines>(4, 65536),
-       "texture cache (a power of two)"},
-      {"texture.cache_ways", "ways", integer<&M::texture, &M::Texture::cache_ways>(1, 16),
-       "its ways (a power of two)"},
-      {"texture.line_bytes", "bytes", integer<&M::texture, &M::Texture::line_bytes>(16, 256),
-       "its line: one or more blocks of 4x4 texels (a power of two)"},
-      {"texture.fill_bytes", "bytes", integer<&M::texture, &M::Texture::fill_bytes>(8, 256),
-       "read on a miss: the line, or the part of it that the sample lies in (a power of two)"},
+      {"texture.cache_lines", "lines", power_of_two<&M::texture, &M::Texture::cache_lines>(4, 65536),
+       "texture cache"},
+      {"texture.cache_ways", "ways", power_of_two<&M::texture, &M::Texture::cache_ways>(1, 16), "its ways"},
+      {"texture.line_bytes", "bytes", power_of_two<&M::texture, &M::Texture::line_bytes>(16, 256),
+       "its line: one or more blocks of 4x4 texels"},
+      {"texture.fill_bytes", "bytes", power_of_two<&M::texture, &M::Texture::fill_bytes>(8, 256),
+       "read on a miss: the line, or the part of it that the sample lies in"},
       {"texture.lookups_per_clock", "", integer<&M::texture, &M::Texture::lookups_per_clock>(1, 64),
        "texel blocks looked up a clock"},
       {"texture.pending", "quads", integer<&M::texture, &M::Texture::pending>(1, 4096),
@@ -156,10 +159,9 @@ std::vector<Parameter> pixel_parameters() {
       {"pixel.latency", "clocks", integer<&M::pixel, &M::Pixel::latency>(1, 256), "through the pixel unit"},
       {"pixel.queue", "quads", integer<&M::pixel, &M::Pixel::queue>(1, 1024),
        "quads in and behind the pixel unit"},
-      {"blend.cache_lines", "lines", integer<&M::blend, &M::Blend::cache_lines>(4, 65536),
-       "colour cache, lines of 4x4 pixels (a power of two)"},
-      {"blend.cache_ways", "ways", integer<&M::blend, &M::Blend::cache_ways>(1, 16),
-       "its ways (a power of two)"},
+      {"blend.cache_lines", "lines", power_of_two<&M::blend, &M::Blend::cache_lines>(4, 65536),
+       "colour cache, lines of 4x4 pixels"},
+      {"blend.cache_ways", "ways", power_of_two<&M::blend, &M::Blend::cache_ways>(1, 16), "its ways"},
       {"blend.pending", "quads", integer<&M::blend, &M::Blend::pending>(1, 4096),
        "quads waiting for their lines"},
   };
@@ -167,20 +169,20 @@ std::vector<Parameter> pixel_parameters() {
 
 std::vector<Parameter> memory_parameters() {
   return {
-      {"memory.channels", "", integer<&M::memory, &M::Memory::channels>(1, 16),
-       "independent controllers (a power of two)"},
+      {"memory.channels", "", power_of_two<&M::memory, &M::Memory::channels>(1, 16),
+       "independent controllers"},
       {"memory.channel_bytes_per_clock", "bytes",
-       integer<&M::memory, &M::Memory::channel_bytes_per_clock>(1, 256),
-       "a channel's data a clock, both edges (a power of two)"},
-      {"memory.burst_bytes", "bytes", integer<&M::memory, &M::Memory::burst_bytes>(8, 256),
-       "least data of an access (a power of two)"},
-      {"memory.interleave_bytes", "bytes", integer<&M::memory, &M::Memory::interleave_bytes>(64, 65536),
-       "consecutive addresses on one channel (a power of two)"},
-      {"memory.banks", "", integer<&M::memory, &M::Memory::banks>(1, 64),
-       "banks a channel (a power of two); the frame with its surfaces, the depths, each texture and buffer "
+       power_of_two<&M::memory, &M::Memory::channel_bytes_per_clock>(1, 256),
+       "a channel's data a clock, both edges"},
+      {"memory.burst_bytes", "bytes", power_of_two<&M::memory, &M::Memory::burst_bytes>(8, 256),
+       "least data of an access"},
+      {"memory.interleave_bytes", "bytes", power_of_two<&M::memory, &M::Memory::interleave_bytes>(64, 65536),
+       "consecutive addresses on one channel"},
+      {"memory.banks", "", power_of_two<&M::memory, &M::Memory::banks>(1, 64),
+       "banks a channel; the frame with its surfaces, the depths, each texture and buffer "
        "begin in the first"},
-      {"memory.row_bytes", "bytes", integer<&M::memory, &M::Memory::row_bytes>(256, 65536),
-       "row of a bank (a power of two)"},
+      {"memory.row_bytes", "bytes", power_of_two<&M::memory, &M::Memory::row_bytes>(256, 65536),
+       "row of a bank"},
       {"memory.precharge_clocks", "clocks", integer<&M::memory, &M::Memory::precharge_clocks>(0, 256),
        "from precharge to activate (tRP)"},
       {"memory.activate_clocks", "clocks", integer<&M::memory, &M::Memory::activate_clocks>(0, 256),

@@ -11,6 +11,7 @@ namespace splatscope::machine {
 struct IntegerField {
   int& (*of)(Machine&);
   int least, most;
+  bool power_of_two = false;  // address arithmetic splits it by bits
 };
 struct RealField {
   double& (*of)(Machine&);

@@ -17,8 +17,8 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 // pixels long when it faces the eye has twice a triangle's area size^2 cos. Rounding moves each corner by
 // 1/32 at most in x and y, the area by that times the sum of the edges in the taxicab norm, 4 size, and by
 // 6/32^2: only beyond this cosine the quad cannot turn round. 0.01 is for the rounding of the vertex
-// programs. No less than kCosine, which is enough for quads of 0.95 pixels: the same blocks whatever the size
-// of the frame, so that frame rates by resolution compare pixels.
+// programs. No less than kCosine, which is enough for quads of 0.95 pixels: from there on the same blocks
+// whatever the size of the frame, so that frame rates by resolution compare pixels.
 double turning_cosine(double size) {
   constexpr double kStep = 1.0 / 32;
   constexpr double kCosine = 0.15;
