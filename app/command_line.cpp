@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -64,6 +65,15 @@ void refuse_empty_values(CLI::App& command) {
   for (CLI::App* part : command.get_subcommands([](CLI::App*) { return true; })) refuse_empty_values(*part);
 }
 
+// Words that nothing takes, in their order: CLI11's own message turns it round.
+std::string not_expected(const CLI::App& app) {
+  const std::vector<std::string> left = app.remaining(true);
+  const bool apart = std::ranges::any_of(left, [](const std::string& word) { return word.starts_with('='); });
+  return one_line(
+      fmt::format("splatscope: not expected: {} ({})", fmt::join(left, " "),
+                  apart ? "a key and its value are one word: KEY=VALUE" : "--help says what is expected"));
+}
+
 // Where a word stands in the place of a command: that, and which there are. Empty: it is something else.
 std::string unknown_command(const CLI::App& app) {
   const std::vector<std::string> left = app.remaining(true);
@@ -103,6 +113,10 @@ int run(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
     if (const std::string unknown = unknown_command(app); !unknown.empty()) {
       std::cerr << unknown << '\n';
+      return kBadInput;
+    }
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+      std::cerr << not_expected(app) << '\n';
       return kBadInput;
     }
     std::cerr << "splatscope: " << one_line(error.what()) << " (--help says what is expected)\n";

@@ -113,8 +113,10 @@ SweptParameter swept_parameter(std::string_view text) {
     throw UserError("--sweep", 0, fmt::format("\"{}\", expected KEY=VALUE,VALUE,...", text));
   std::set<std::string> given;
   for (const std::string& value : parameter.values) {
-    // An empty one is no value, and refused as such.
-    if (!value.empty() && !given.insert(unquoted(value)).second)
+    if (value.empty())
+      throw UserError("--sweep", 0,
+                      fmt::format("\"{}\" has an empty value, expected KEY=VALUE,VALUE,...", text));
+    if (!given.insert(unquoted(value)).second)
       throw UserError("--sweep", 0,
                       fmt::format("\"{}\" has {} twice, expected each value once", text, value));
   }

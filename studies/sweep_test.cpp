@@ -161,10 +161,10 @@ TEST_F(Sweeps, WrongInputIsAUsersError) {
     return splatscope::error_of([&] { run_sweep(file, machine, {swept_parameter(text)}, Fidelity::cycle); });
   };
   EXPECT_EQ(error_of("vertex.units=1,99").find("--sweep: vertex.units is out of range (99), expected"), 0u);
-  for (const char* text : {"vertex.units=1,,2", "vertex.units=1,2,", "vertex.units=,1", "vertex.units=,"}) {
-    EXPECT_EQ(error_of(text).find("--sweep: vertex.units has no valid value in \"vertex.units=\", expected"),
-              0u)
-        << text;
+  for (const std::string text :
+       {"vertex.units=1,,2", "vertex.units=1,2,", "vertex.units=,1", "vertex.units=,"}) {
+    EXPECT_EQ(splatscope::error_of([&] { swept_parameter(text); }),
+              "--sweep: \"" + text + "\" has an empty value, expected KEY=VALUE,VALUE,...");
   }
   EXPECT_THROW(run_sweep(file, machine, {{"vertex.units", {"1"}}}, Fidelity::functional), UserError);
 }

@@ -69,6 +69,13 @@ TEST_F(Arguments, NoneIsEmpty) {
                  "--program: \"splat_ewa.vs=\", expected NAME=FILE");
 }
 
+TEST_F(Arguments, WhatNothingTakesIsNamedInItsOrder) {
+  expect_refused({"run", "s.toml", "b.toml", "c.toml", "--out", "o"},
+                 "splatscope: not expected: b.toml c.toml (--help says what is expected)");
+  expect_refused({"run", "s.toml", "--out", "o", "--set", "vertex.units", "=", "4"},
+                 "splatscope: not expected: = 4 (a key and its value are one word: KEY=VALUE)");
+}
+
 TEST_F(Arguments, AParameterIsSetOnce) {
   const std::vector<std::string> twice{"--set", "vertex.units=1", "--set", "memory.channels=2",
                                        "--set", "vertex.units=2"};
