@@ -116,8 +116,6 @@ struct Units {
   Host* host = nullptr;
 };
 
-using Items = Channel<std::uint32_t>;  // numbers of triangles or quads
-
 // In the order of the pipeline; the command processor is called last in its domain.
 Units create_units(Builder& build, SimulatedMachine& machine, const Trace& trace, const Machine& spec,
                    const MemoryLayout& layout, const Needs& needs) {
@@ -147,8 +145,8 @@ Units create_units(Builder& build, SimulatedMachine& machine, const Trace& trace
   u.command = &build.unit<CommandProcessor>(core, "command", completion);
   const Femtoseconds bus_period = period_of(spec.clock.bus_megahertz);
   u.agp = needs.agp ? &build.unit<AgpBus>(bus, "agp", spec.agp, bus_period) : nullptr;
-  const Host::Frame frame{std::uint64_t{trace.width} * trace.height,
-                          static_cast<int>(layout.color.bytes_per_pixel)};
+  const Host::Pixels frame{std::uint64_t{trace.width} * trace.height,
+                           static_cast<int>(layout.color.bytes_per_pixel)};
   u.host = &build.unit<Host>(bus, "host", spec.host, bus_period, trace, frame);
   machine.memory.assign(u.memory.begin(), u.memory.end());
   machine.host = u.host;
@@ -214,13 +212,13 @@ void connect_quads(Builder& build, const Units& u, Items& set_up, const Machine&
         build.video_port(*u.depth, u.memory, frame_reads(spec, layout.depth, spec.depth.pending)),
         layout.depth_address);
   }
-  Quads* sampled = way(u.texture, u.pixel, spec.texture.queue, spec.texture.latency);
+  Items* sampled = way(u.texture, u.pixel, spec.texture.queue, spec.texture.latency);
   if (u.texture) {
     u.texture->connect({after_raster.texture, after_depth.texture, nullptr}, *sampled,
                        build.video_port(*u.texture, u.memory, 4 * (spec.texture.pending + 1)));
   }
   if (u.pixel) {
-    Quads* shaded = way(u.pixel, u.blend, spec.pixel.queue, spec.pixel.latency);
+    Items* shaded = way(u.pixel, u.blend, spec.pixel.queue, spec.pixel.latency);
     u.pixel->connect({after_raster.pixel, after_depth.pixel, sampled}, *shaded);
     u.blend->connect(
         *shaded, build.video_port(*u.blend, u.memory, frame_reads(spec, layout.color, spec.blend.pending)),

@@ -51,8 +51,8 @@ double corner_reach(const Splatting& splatting) {
   return std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff));
 }
 
-void frame_camera(std::span<const Surfel> surfels, double reach, const Frame& frame, const CameraKeys& given,
-                  Camera& camera) {
+void frame_camera(std::span<const Surfel> surfels, double reach, const FrameSize& frame,
+                  const CameraKeys& given, Camera& camera) {
   if (surfels.empty()) return;
   if (!given.up) camera.up = {0, 1, 0};
   if (!given.fov_y_degrees) camera.fov_y_degrees = kFieldOfView;

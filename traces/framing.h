@@ -19,7 +19,7 @@ double corner_reach(const Splatting& splatting);
 // that they fill to the edge of the frame less a small margin, with the clip planes as close to their splats
 // (`reach` radii, 2 at the least) as they may be, for the sake of the depth's precision. A key that is given
 // stays. Positions must be finite; without surfels the camera stays as it is.
-void frame_camera(std::span<const Surfel> surfels, double reach, const Frame& frame, const CameraKeys& given,
-                  Camera& camera);
+void frame_camera(std::span<const Surfel> surfels, double reach, const FrameSize& frame,
+                  const CameraKeys& given, Camera& camera);
 
 }  // namespace splatscope::traces

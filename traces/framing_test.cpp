@@ -35,7 +35,7 @@ std::vector<Surfel> any_surfels() {
 // All within the frame and between the planes; the one furthest out is near the frame's edge.
 RC_GTEST_PROP(Framing, EverySurfelIsSeenAndTheFrameIsFilled, ()) {
   const std::vector<Surfel> surfels = any_surfels();
-  const Frame frame{*rc::gen::element(100, 400), *rc::gen::element(100, 300)};
+  const FrameSize frame{*rc::gen::element(100, 400), *rc::gen::element(100, 300)};
   Camera camera;
   frame_camera(surfels, 2, frame, {}, camera);
   RC_ASSERT(camera.near > 0 && camera.near < camera.far);

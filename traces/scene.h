@@ -34,7 +34,7 @@ struct Camera {
   double far = 0;
 };
 
-struct Frame {
+struct FrameSize {
   int width = 0;   // pixels
   int height = 0;  // pixels
 };
@@ -118,7 +118,7 @@ struct Scene {
   EstimateCounts estimated;
   MeshCounts mesh;  // all 0 where the surfels come from no mesh
   Camera camera;
-  Frame frame;
+  FrameSize frame;
   Splatting splatting;
   Capture capture;
   Hierarchy hierarchy;

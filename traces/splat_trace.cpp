@@ -173,7 +173,7 @@ Buffer quad_indices(std::size_t quads) {
   return buffer;
 }
 
-kernels::View view_of(const Camera& camera, const Frame& frame) {
+kernels::View view_of(const Camera& camera, const FrameSize& frame) {
   return kernels::look_at(camera.eye, camera.target, camera.up, camera.fov_y_degrees, frame.width,
                           frame.height, camera.near, camera.far);
 }

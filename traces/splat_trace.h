@@ -57,7 +57,7 @@ struct DrawnRange {
 };
 
 // The scene's camera and frame as the programs need them.
-kernels::View view_of(const Camera& camera, const Frame& frame);
+kernels::View view_of(const Camera& camera, const FrameSize& frame);
 
 // The orthogonal tangents of a surfel, scaled by its radius h: the axes of its parameterisation.
 struct Tangents {

@@ -6,7 +6,7 @@
 
 #include "model/command/commands.h"
 #include "model/work/work.h"
-#include "sim/kernel/unit.h"
+#include "sim/kernel/channel.h"
 
 namespace splatscope::sim {
 
@@ -35,6 +35,9 @@ struct DrawJob {
   std::span<const Cut> cuts;             // in order
   std::span<const std::uint32_t> marks;  // triangles, in order, at which primitive assembly tells the time
 };
+
+// From unit to unit: numbers of the draw's triangles, or of its quads.
+using Items = Channel<std::uint32_t>;
 
 // Whether a quad goes on to texture, pixel unit and blending.
 inline bool is_colored(const DrawJob& job, const QuadWork& quad) {

@@ -239,7 +239,7 @@ std::vector<Surfel> corners_of(const kernels::Box& box) {
 }
 
 kernels::View view_of(SceneSettings& settings, const kernels::Box& box, std::string_view file) {
-  const Frame frame{settings.width, settings.height};
+  const FrameSize frame{settings.width, settings.height};
   frame_camera(corners_of(box), 0, frame, settings.camera_given, settings.camera);
   check_camera(settings, file);
   return traces::view_of(settings.camera, frame);

@@ -8,7 +8,7 @@ BlendUnit::BlendUnit(std::string name, Completion& completion, const Machine::Bl
                 {spec.cache_lines, spec.cache_ways, lines.line_bytes(), lines.line_bytes(), spec.pending},
                 lines, quads_per_clock) {}
 
-void BlendUnit::connect(Channel<std::uint32_t>& in, MemoryPort& port, std::uint32_t address) {
+void BlendUnit::connect(Items& in, MemoryPort& port, std::uint32_t address) {
   in_ = &in;
   cache_.connect(port, address);
 }

@@ -11,7 +11,7 @@ class BlendUnit final : public FrameUnit {
  public:
   BlendUnit(std::string name, Completion& completion, const Machine::Blend& spec, const FrameLines& lines,
             int quads_per_clock);
-  void connect(Channel<std::uint32_t>& in, MemoryPort& port, std::uint32_t address);
+  void connect(Items& in, MemoryPort& port, std::uint32_t address);
 
   std::vector<Statistic> statistics(Cycle) const override;
 

@@ -11,7 +11,7 @@ struct BlendBench {
   testing::Bench bench;
   testing::Source<std::uint32_t> source{{{0, 0u}, {0, 1u}}};
   BlendUnit blend;
-  Channel<std::uint32_t> in;
+  Items in;
   testing::TestMemory memory;
 
   BlendBench(bool blends, std::uint32_t bytes_per_pixel)
@@ -58,7 +58,7 @@ TEST(BlendUnit, WhatWasLeftOutPassesThroughTheTags) {
   testing::Bench bench;
   testing::Source<std::uint32_t> source{{{0, 0u}, {0, 1u}, {0, 2u}}};
   BlendUnit blend("blend", bench.completion(), {4, 4, 8}, FrameLines::of(512, 512, 4), 1);
-  Channel<std::uint32_t> in((bench.add(source), bench.add(blend), "in"), source, blend, 8);
+  Items in((bench.add(source), bench.add(blend), "in"), source, blend, 8);
   testing::TestMemory memory(bench, blend, 40);
   testing::TestDraw draw, left_out;
   draw.draw.state.blend = true;

@@ -4,7 +4,7 @@
 
 namespace splatscope::sim {
 
-Step CachedUnit::waiting(Cycle now, const Channel<std::uint32_t>* out) {
+Step CachedUnit::waiting(Cycle now, const Items* out) {
   Cycle next = kNever;
   if (in_the_way_) {
     next = cache_.next_try();

@@ -17,7 +17,7 @@ class CachedUnit : public DrawUnit {
       : DrawUnit(std::move(name), completion), quads_per_clock_(quads_per_clock), cache_(cache) {}
 
   // Nothing could be moved in this cycle: why, and until when. `out`: where quads go; nullptr: they end here.
-  Step waiting(Cycle now, const Channel<std::uint32_t>* out);
+  Step waiting(Cycle now, const Items* out);
 
   // Before quad `number` is looked up: what the draw left out before it passes through the tags.
   void pass_cuts(std::uint32_t number) {
@@ -26,7 +26,7 @@ class CachedUnit : public DrawUnit {
   virtual void pass(const Cut& cut) = 0;
 
   int quads_per_clock_;
-  Channel<std::uint32_t>* in_ = nullptr;
+  Items* in_ = nullptr;
   CachePipe cache_;
   const Unit* in_the_way_ = nullptr;  // of the quad that would enter
 };
@@ -49,7 +49,7 @@ class FrameUnit : public CachedUnit {
   virtual bool enter(Cycle now) = 0;
 
   FrameLines lines_;
-  Channel<std::uint32_t>* out_ = nullptr;  // nullptr: quads end here
+  Items* out_ = nullptr;  // nullptr: quads end here
 
  private:
   Step flush(Cycle now);

@@ -11,7 +11,7 @@ DepthUnit::DepthUnit(std::string name, Completion& completion, const Machine::De
                 lines, quads_per_clock),
       cleared_(lines.lines(), false) {}
 
-void DepthUnit::connect(Quads& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address) {
+void DepthUnit::connect(Items& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address) {
   in_ = &in;
   targets_ = out;
   cache_.connect(port, address);

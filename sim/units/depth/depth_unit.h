@@ -15,7 +15,7 @@ class DepthUnit final : public FrameUnit {
  public:
   DepthUnit(std::string name, Completion& completion, const Machine::Depth& spec, const FrameLines& lines,
             int quads_per_clock);
-  void connect(Quads& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address);
+  void connect(Items& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address);
 
   std::vector<Statistic> statistics(Cycle) const override;
 

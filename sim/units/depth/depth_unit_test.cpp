@@ -14,7 +14,7 @@ struct DepthBench {
   testing::Source<std::uint32_t> source;
   DepthUnit depth;
   testing::Sink<std::uint32_t> sink;
-  Channel<std::uint32_t> in, out;
+  Items in, out;
   testing::TestMemory memory;
 
   DepthBench(testing::TestDraw& draw, const Machine::Depth& spec, bool cleared)

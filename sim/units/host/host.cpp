@@ -14,7 +14,7 @@ Femtoseconds Host::pixel_time(const Machine::Host& spec, Femtoseconds period, in
 }
 
 Host::Host(std::string name, const Machine::Host& spec, Femtoseconds period, const Trace& trace,
-           const Frame& frame)
+           const Pixels& frame)
     : Unit(std::move(name)), spec_(spec), period_(period), trace_(trace), frame_(frame) {}
 
 void Host::connect(Channel<Order>& orders, Channel<std::uint32_t>& reports) {
@@ -48,7 +48,7 @@ Step Host::report(Cycle now) {
   }
   if (std::holds_alternative<NormalizeOnHost>(trace_.commands[command_])) {
     phase_ = Phase::normalizing;
-    pixels_left_ = frame_.pixels;
+    pixels_left_ = frame_.count;
     pixel_end_ = now * period_;
     ready_ = now;
     return busy(now + 1);
@@ -83,7 +83,7 @@ Step Host::normalize(Cycle now) {
   }
   --pixels_left_;
   ++pixels_;
-  pixel_end_ += pixel_time(spec_, period_, frame_.pixel_bytes);
+  pixel_end_ += pixel_time(spec_, period_, frame_.bytes);
   ready_ = cycles_of(pixel_end_, period_);
   event(ready_, pixels_left_);
   return busy(ready_);

@@ -18,13 +18,14 @@ class Host final : public Unit {
   // To read back, divide and write one pixel of so many bytes. `period`: of the bus clock.
   static Femtoseconds pixel_time(const Machine::Host& spec, Femtoseconds period, int pixel_bytes);
 
-  // `period`: of the bus clock. `pixels`: of the frame; `pixel_bytes`: of one.
-  struct Frame {
-    std::uint64_t pixels = 0;
-    int pixel_bytes = 4;
+  // Of the frame.
+  struct Pixels {
+    std::uint64_t count = 0;
+    int bytes = 4;  // of one
   };
+  // `period`: of the bus clock.
   Host(std::string name, const Machine::Host& spec, Femtoseconds period, const Trace& trace,
-       const Frame& frame);
+       const Pixels& frame);
   void connect(Channel<Order>& orders, Channel<std::uint32_t>& reports);
 
   Step advance(Cycle now) override;
@@ -51,7 +52,7 @@ class Host final : public Unit {
   Machine::Host spec_;
   Femtoseconds period_;
   const Trace& trace_;
-  Frame frame_;
+  Pixels frame_;
   Channel<Order>* orders_ = nullptr;
   Channel<std::uint32_t>* reports_ = nullptr;
 

@@ -39,7 +39,7 @@ constexpr Femtoseconds kPeriod = 10'000'000;  // ten nanoseconds
 
 // A host between nothing and the echo, run to its end.
 struct HostRun {
-  HostRun(const Machine::Host& spec, const Trace& trace, const Host::Frame& frame)
+  HostRun(const Machine::Host& spec, const Trace& trace, const Host::Pixels& frame)
       : host("host", spec, kPeriod, trace, frame) {
     bus.add(host, 0);
     bus.add(echo, 1);

@@ -5,7 +5,7 @@ namespace splatscope::sim {
 PixelUnit::PixelUnit(std::string name, Completion& completion, int quads_per_clock)
     : DrawUnit(std::move(name), completion), quads_per_clock_(quads_per_clock) {}
 
-void PixelUnit::connect(const QuadSources& in, Quads& out) {
+void PixelUnit::connect(const QuadSources& in, Items& out) {
   sources_ = in;
   out_ = &out;
 }

@@ -11,7 +11,7 @@ namespace splatscope::sim {
 class PixelUnit final : public DrawUnit {
  public:
   PixelUnit(std::string name, Completion& completion, int quads_per_clock);
-  void connect(const QuadSources& in, Quads& out);
+  void connect(const QuadSources& in, Items& out);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics(Cycle) const override;
@@ -21,8 +21,8 @@ class PixelUnit final : public DrawUnit {
 
   int quads_per_clock_;
   QuadSources sources_;
-  Quads* in_ = nullptr;  // of this draw
-  Channel<std::uint32_t>* out_ = nullptr;
+  Items* in_ = nullptr;  // of this draw
+  Items* out_ = nullptr;
   Cycle free_from_ = 0;
   std::uint64_t quads_ = 0;
 };

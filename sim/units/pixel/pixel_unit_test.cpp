@@ -19,7 +19,7 @@ Timed<std::uint32_t> shaded(std::uint64_t clocks, int quads_per_clock) {
   testing::Sink<std::uint32_t> sink;
   for (Unit* unit : {static_cast<Unit*>(&source), static_cast<Unit*>(&pixel), static_cast<Unit*>(&sink)})
     bench.add(*unit);
-  Channel<std::uint32_t> in("in", source, pixel, 4), out("out", pixel, sink, 8, 16);
+  Items in("in", source, pixel, 4), out("out", pixel, sink, 8, 16);
   source.connect(in);
   pixel.connect({&in, nullptr, nullptr}, out);
   sink.connect(out);

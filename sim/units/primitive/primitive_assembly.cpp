@@ -11,7 +11,7 @@ PrimitiveAssembly::PrimitiveAssembly(std::string name, Completion& completion, c
     : DrawUnit(std::move(name), completion), spec_(spec) {}
 
 void PrimitiveAssembly::connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexNumber>*> units,
-                                Channel<std::uint32_t>& out) {
+                                Items& out) {
   order_ = &order;
   units_ = std::move(units);
   out_ = &out;

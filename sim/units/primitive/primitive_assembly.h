@@ -16,8 +16,7 @@ class PrimitiveAssembly final : public DrawUnit {
  public:
   PrimitiveAssembly(std::string name, Completion& completion, const Machine::Primitive& spec);
   // `order`: which vertex unit has the next vertex. `out`: the numbers of the triangles to set up.
-  void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexNumber>*> units,
-               Channel<std::uint32_t>& out);
+  void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexNumber>*> units, Items& out);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics(Cycle) const override;
@@ -36,7 +35,7 @@ class PrimitiveAssembly final : public DrawUnit {
   Machine::Primitive spec_;
   Channel<std::uint8_t>* order_ = nullptr;
   std::vector<Channel<VertexNumber>*> units_;
-  Channel<std::uint32_t>* out_ = nullptr;
+  Items* out_ = nullptr;
   std::size_t triangle_ = 0;
   std::uint32_t vertices_ = 0;  // taken and not used by a triangle yet
   Cycle free_from_ = 0;

@@ -25,7 +25,7 @@ Timed<std::uint32_t> assemble(testing::TestDraw& draw, Timed<VertexNumber> verti
   }
   Channel<VertexNumber> in("in", source, assembly, 8);
   Channel<std::uint8_t> order("order", order_source, assembly, 8);
-  Channel<std::uint32_t> out("out", assembly, sink, 8);
+  Items out("out", assembly, sink, 8);
   source.connect(in);
   order_source.connect(order);
   assembly.connect(order, {&in}, out);

@@ -8,7 +8,7 @@ Rasteriser::Rasteriser(std::string name, Completion& completion, const Machine::
                        int quads_per_clock)
     : DrawUnit(std::move(name), completion), spec_(spec), quads_per_clock_(quads_per_clock) {}
 
-void Rasteriser::connect(Channel<std::uint32_t>& in, const QuadTargets& out) {
+void Rasteriser::connect(Items& in, const QuadTargets& out) {
   in_ = &in;
   targets_ = out;
 }

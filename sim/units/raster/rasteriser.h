@@ -16,7 +16,7 @@ class Rasteriser final : public DrawUnit {
  public:
   Rasteriser(std::string name, Completion& completion, const Machine::Raster& spec, int quads_per_clock);
   // The depth test takes all quads; past it only coloured ones go out.
-  void connect(Channel<std::uint32_t>& in, const QuadTargets& out);
+  void connect(Items& in, const QuadTargets& out);
 
   // `on_quad` is told each quad in the cycle in which it is done; empty: nobody.
   void on_quad(std::function<void(Cycle, const QuadWork&)> on_quad) { on_quad_ = std::move(on_quad); }
@@ -31,9 +31,9 @@ class Rasteriser final : public DrawUnit {
 
   Machine::Raster spec_;
   int quads_per_clock_;
-  Channel<std::uint32_t>* in_ = nullptr;
+  Items* in_ = nullptr;
   QuadTargets targets_;
-  Quads* out_ = nullptr;  // of this draw; nullptr: quads end here
+  Items* out_ = nullptr;  // of this draw; nullptr: quads end here
   bool all_quads_ = true;
   bool walking_ = false;
   std::uint32_t triangle_ = 0;

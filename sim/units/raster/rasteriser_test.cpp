@@ -19,7 +19,7 @@ struct RasterBench {
   Source<std::uint32_t> source;
   Rasteriser raster;
   Sink<std::uint32_t> sink;
-  Channel<std::uint32_t> in, out;
+  Items in, out;
 
   RasterBench(TestDraw& draw, Machine::Raster spec, int quads_per_clock, Cycle taken_from, int room)
       : source({{0, 0u}, {0, 1u}}),

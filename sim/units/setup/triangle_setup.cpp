@@ -5,7 +5,7 @@ namespace splatscope::sim {
 TriangleSetup::TriangleSetup(std::string name, Completion& completion, const Machine::Setup& spec)
     : DrawUnit(std::move(name), completion), spec_(spec) {}
 
-void TriangleSetup::connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out) {
+void TriangleSetup::connect(Items& in, Items& out) {
   in_ = &in;
   out_ = &out;
 }

@@ -11,7 +11,7 @@ namespace splatscope::sim {
 class TriangleSetup final : public DrawUnit {
  public:
   TriangleSetup(std::string name, Completion& completion, const Machine::Setup& spec);
-  void connect(Channel<std::uint32_t>& in, Channel<std::uint32_t>& out);
+  void connect(Items& in, Items& out);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics(Cycle) const override;
@@ -20,8 +20,8 @@ class TriangleSetup final : public DrawUnit {
   std::uint64_t start(const DrawJob& job) override;
 
   Machine::Setup spec_;
-  Channel<std::uint32_t>* in_ = nullptr;
-  Channel<std::uint32_t>* out_ = nullptr;
+  Items* in_ = nullptr;
+  Items* out_ = nullptr;
   Cycle free_from_ = 0;
   std::uint64_t triangles_ = 0;
 };

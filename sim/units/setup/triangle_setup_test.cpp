@@ -20,7 +20,7 @@ TEST(TriangleSetup, TakesItsClocksForEachPiece) {
   testing::Sink<std::uint32_t> sink;
   for (Unit* unit : {static_cast<Unit*>(&source), static_cast<Unit*>(&setup), static_cast<Unit*>(&sink)})
     bench.add(*unit);
-  Channel<std::uint32_t> in("in", source, setup, 4), out("out", setup, sink, 4, 10);
+  Items in("in", source, setup, 4), out("out", setup, sink, 4, 10);
   source.connect(in);
   setup.connect(in, out);
   sink.connect(out);

@@ -14,7 +14,7 @@ TextureUnit::TextureUnit(std::string name, Completion& completion, const Machine
       line_shift_(static_cast<std::uint32_t>(
           std::countr_zero(static_cast<unsigned>(spec.line_bytes) / kTexelBlockBytes))) {}
 
-void TextureUnit::connect(const QuadSources& in, Quads& out, MemoryPort& port) {
+void TextureUnit::connect(const QuadSources& in, Items& out, MemoryPort& port) {
   sources_ = in;
   out_ = &out;
   port_ = &port;

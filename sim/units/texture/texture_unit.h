@@ -11,7 +11,7 @@ namespace splatscope::sim {
 class TextureUnit final : public CachedUnit {
  public:
   TextureUnit(std::string name, Completion& completion, const Machine::Texture& spec, int quads_per_clock);
-  void connect(const QuadSources& in, Quads& out, MemoryPort& port);
+  void connect(const QuadSources& in, Items& out, MemoryPort& port);
 
   Step advance(Cycle now) override;
   std::vector<Statistic> statistics(Cycle) const override;
@@ -24,7 +24,7 @@ class TextureUnit final : public CachedUnit {
 
   Machine::Texture spec_;
   std::uint32_t line_shift_;  // blocks a line
-  Channel<std::uint32_t>* out_ = nullptr;
+  Items* out_ = nullptr;
   MemoryPort* port_ = nullptr;
   QuadSources sources_;
   std::size_t next_block_ = 0;     // of the draw

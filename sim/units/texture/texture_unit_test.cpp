@@ -14,7 +14,7 @@ struct TextureBench {
   testing::Source<std::uint32_t> source;
   TextureUnit texture;
   testing::Sink<std::uint32_t> sink;
-  Channel<std::uint32_t> in, out;
+  Items in, out;
   testing::TestMemory memory;
 
   TextureBench(testing::TestDraw& draw, const Machine::Texture& spec, Cycle latency, int memory_queue = 64)
