@@ -23,11 +23,11 @@ int largest_step(const Texture& texture) {
   return largest;
 }
 
-TEST(AlphaTexture, length_of_the_paper) {
+TEST(AlphaTexture, LengthOfThePaper) {
   EXPECT_EQ(optimal_length(1.0), 438);
 }
 
-TEST(AlphaTexture, length_is_the_smallest_that_satisfies_equation_15) {
+TEST(AlphaTexture, LengthIsTheSmallestThatSatisfiesEquation15) {
   for (const double cutoff : {0.1, 0.3, 0.5, 0.7, 1.0, 2.0, 4.0}) {
     const double radius = std::sqrt(2.0 * cutoff);
     double steepest = 0;
@@ -41,12 +41,12 @@ TEST(AlphaTexture, length_is_the_smallest_that_satisfies_equation_15) {
   }
 }
 
-TEST(AlphaTexture, optimal_length_leaves_no_step_out) {
+TEST(AlphaTexture, OptimalLengthLeavesNoStepOut) {
   EXPECT_EQ(largest_step(alpha_texture(1.0, 438, CutoffShape::square)), 1);
   EXPECT_EQ(largest_step(alpha_texture(1.0, 219, CutoffShape::square)), 2);
 }
 
-TEST(AlphaTexture, texels_are_the_gaussian_at_their_centres) {
+TEST(AlphaTexture, TexelsAreTheGaussianAtTheirCentres) {
   // len = 4, c = 2: centres at y = -1.5, -0.5, 0.5, 1.5.
   const Texture texture = alpha_texture(2.0, 4, CutoffShape::square);
   EXPECT_EQ(texture.width, 4u);
@@ -58,7 +58,7 @@ TEST(AlphaTexture, texels_are_the_gaussian_at_their_centres) {
   EXPECT_EQ(texel(texture, 3, 3), 27);  // 255 exp(-2.25)
 }
 
-TEST(AlphaTexture, circle_is_the_square_with_its_corners_cut) {
+TEST(AlphaTexture, CircleIsTheSquareWithItsCornersCut) {
   const int length = 101;
   const Texture square = alpha_texture(1.0, length, CutoffShape::square);
   const Texture circle = alpha_texture(1.0, length, CutoffShape::circle);

@@ -29,12 +29,12 @@ Vec4 run(std::string_view name) {
   return {batch->r0[0][0], batch->r0[1][0], batch->r0[2][0], batch->r0[3][0]};
 }
 
-TEST(PixelPrograms, colour_and_weight_apart) {
+TEST(PixelPrograms, ColourAndWeightApart) {
   EXPECT_EQ(run(kSplatPixelProgram), (Vec4{0.5f, 0.25f, 1.0f, 0.375f}));
   EXPECT_EQ(isa::slot_count(load(kSplatPixelProgram)), 2);
 }
 
-TEST(PixelPrograms, colour_times_weight) {
+TEST(PixelPrograms, ColourTimesWeight) {
   EXPECT_EQ(run(kWeightedSplatPixelProgram), (Vec4{0.1875f, 0.09375f, 0.375f, 0.375f}));
   EXPECT_EQ(isa::slot_count(load(kWeightedSplatPixelProgram)), 3);
 }

@@ -39,7 +39,7 @@ std::vector<Surfel> mixed_surfels(const View& view, std::uint32_t seed) {
 }
 
 // The distance is that of the normal as it stands in the vertex, rounded to float: not of the exact one.
-TEST(Programs, the_plane_in_a_vertex_belongs_to_the_normal_beside_it) {
+TEST(Programs, ThePlaneInAVertexBelongsToTheNormalBesideIt) {
   const View view = test_view();
   for (const Surfel& surfel : mixed_surfels(view, random_seed())) {
     const std::span<const VertexField> fields = ewa_program("facing").fields;
@@ -52,20 +52,20 @@ TEST(Programs, the_plane_in_a_vertex_belongs_to_the_normal_beside_it) {
   }
 }
 
-TEST(Programs, slots_of_the_paper) {
+TEST(Programs, SlotsOfThePaper) {
   EXPECT_EQ(isa::slot_count(load_program(kVisibilityProgram)), 13);
   EXPECT_EQ(isa::slot_count(load_program(kPlainProgram)), 21);
   EXPECT_EQ(isa::slot_count(load_program(kEwaProgram)), 78);
 }
 
-TEST(Programs, slots_of_the_short_ones) {
+TEST(Programs, SlotsOfTheShortOnes) {
   EXPECT_EQ(isa::slot_count(load_program(kCornerVisibilityProgram)), 9);
   EXPECT_EQ(isa::slot_count(load_program(kNormalProgram)), 37);
   EXPECT_EQ(isa::slot_count(load_program(kPlaneProgram)), 31);
   EXPECT_EQ(isa::slot_count(load_program(kFacingProgram)), 29);
 }
 
-TEST(Programs, an_unknown_name_is_an_error) {
+TEST(Programs, AnUnknownNameIsAnError) {
   EXPECT_THROW(shader_text("splat.vs"), ModelError);
   EXPECT_THROW(ewa_program("quad"), ModelError);
   EXPECT_THROW(visibility_program("paper"), ModelError);
@@ -81,7 +81,7 @@ std::vector<SplatProgram> all_programs() {
 class Liveness : public testing::TestWithParam<SplatProgram> {};
 
 // Without any one instruction some surfel comes out otherwise: nothing is padding.
-TEST_P(Liveness, every_instruction_changes_an_output) {
+TEST_P(Liveness, EveryInstructionChangesAnOutput) {
   const View view = rounded(look_at({0, 0, -4}, {0, 0, 0}, {0, 1, 0}, 60.0, 512, 400, 0.1, 1000.0));
   const std::vector<Surfel> surfels = mixed_surfels(view, 78);
   const std::vector<Vec4> constants = GetParam().constants(view, kCutoff, kDepthOffset);
@@ -99,7 +99,7 @@ TEST_P(Liveness, every_instruction_changes_an_output) {
 INSTANTIATE_TEST_SUITE_P(Programs, Liveness, testing::ValuesIn(all_programs()), program_name);
 
 // The frustum of splat_constants: clip coordinates over w are window coordinates and depth.
-TEST(Programs, projection_is_that_of_the_view) {
+TEST(Programs, ProjectionIsThatOfTheView) {
   const View view = rounded(look_at({1, 2, -4}, {0, 0, 0}, {0, 1, 0}, 50.0, 640, 480, 0.5, 20.0));
   std::vector<Surfel> surfels(1);
   surfels[0].position = glm::vec3(0.5, 0.25, 0.125);
@@ -118,7 +118,7 @@ TEST(Programs, projection_is_that_of_the_view) {
 }
 
 // Section 5.1: o +- s +- t, each moved by z_t along its own viewing ray.
-TEST(Programs, visibility_moves_corners_along_their_viewing_rays) {
+TEST(Programs, VisibilityMovesCornersAlongTheirViewingRays) {
   const View view = test_view();
   std::mt19937 generator(13);
   SurfelRanges ranges;
@@ -142,7 +142,7 @@ TEST(Programs, visibility_moves_corners_along_their_viewing_rays) {
   }
 }
 
-TEST(Programs, colour_and_texture_coordinates_pass) {
+TEST(Programs, ColourAndTextureCoordinatesPass) {
   const View view = test_view();
   std::mt19937 generator(5);
   const std::vector<Surfel> surfels{random_surfel(view, SurfelRanges{}, generator)};

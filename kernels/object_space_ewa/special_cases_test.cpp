@@ -71,7 +71,7 @@ void expect_near(const glm::dmat2& a, const glm::dmat2& b, double tolerance) {
   }
 }
 
-TEST(AppendixA, printed_sign_is_wrong_where_p_is_0_and_b_negative) {
+TEST(AppendixA, PrintedSignIsWrongWherePIs0AndBNegative) {
   for (const double b : {-1.0, 1.0}) {
     for (const double p : {-0.5, 0.0, 0.5}) {
       const glm::dmat2 m{{2.0 + p, 0.5 * b}, {0.5 * b, 2.0}};
@@ -85,7 +85,7 @@ TEST(AppendixA, printed_sign_is_wrong_where_p_is_0_and_b_negative) {
 
 // The plane is tilted about a diagonal of s and t, so S = T exactly; the sign of B by the direction of the
 // tilt.
-TEST_P(SpecialCases, p_is_0) {
+TEST_P(SpecialCases, PIs0) {
   const View view = exact_view();
   const double tilt = std::sqrt(0.375);
   for (const double direction : {-1.0, 1.0}) {
@@ -101,7 +101,7 @@ TEST_P(SpecialCases, p_is_0) {
 }
 
 // Every surfel of a plane that faces the camera, wherever it is: J is a multiple of I.
-TEST_P(SpecialCases, t_is_0) {
+TEST_P(SpecialCases, TIs0) {
   const View view = exact_view();
   for (const double x : {-0.5, 0.0, 0.3}) {
     for (const double y : {-0.4, 0.0, 0.6}) {
@@ -116,7 +116,7 @@ TEST_P(SpecialCases, t_is_0) {
 }
 
 // The eye is in the plane of the surfel: nothing is to be seen of it.
-TEST_P(SpecialCases, d_is_0) {
+TEST_P(SpecialCases, DIs0) {
   const View view = exact_view();
   for (const glm::dvec3 across :
        {glm::dvec3(0.01, 0, 0), glm::dvec3(0, 0.01, 0), glm::dvec3(0.006, 0.008, 0)}) {
@@ -130,7 +130,7 @@ TEST_P(SpecialCases, d_is_0) {
 
 // The paper's program: infinitely long along the ray, one pixel's filter and its own across; as much of that
 // is drawn as stays half the depth away from the eye.
-TEST(SpecialCasesOfThePaper, d_is_0) {
+TEST(SpecialCasesOfThePaper, DIs0) {
   const View view = exact_view();
   for (const bool swapped : {false, true}) {
     Surfel surfel = surfel_at({0, 0, 2}, {0.01, 0, 0}, {0, 0, 0.01});
@@ -150,7 +150,7 @@ TEST(SpecialCasesOfThePaper, d_is_0) {
 }
 
 // Each guard of the program, switched off by its constant.
-TEST(SpecialCasesOfThePaper, guards_act) {
+TEST(SpecialCasesOfThePaper, GuardsAct) {
   const View view = exact_view();
   const SplatProgram& program = ewa_program("paper");
   const std::vector<Vec4> guarded = splat_constants(view, kCutoff, 0.0);
@@ -203,7 +203,7 @@ void expect_finite(const SplatProgram& program, const std::vector<Surfel>& surfe
   }
 }
 
-TEST(SpecialCasesOfThePaper, hostile_surfels_stay_finite) {
+TEST(SpecialCasesOfThePaper, HostileSurfelsStayFinite) {
   Hostile hostile(99);
   for (const double low : {-6.0, -30.0}) {
     std::vector<Surfel> surfels(50000);
@@ -217,7 +217,7 @@ TEST(SpecialCasesOfThePaper, hostile_surfels_stay_finite) {
 
 // The same with s and t as the recorder makes them, at right angles and of one length, from 1e-6 to 1e6, in
 // front of the near plane. Only the paper's program promises finite numbers for what lies behind it.
-TEST_P(SpecialCases, hostile_positions_and_sizes_stay_finite) {
+TEST_P(SpecialCases, HostilePositionsAndSizesStayFinite) {
   Hostile hostile(100);
   for (const double low : {-6.0, -30.0}) {
     std::vector<Surfel> surfels(50000);
@@ -252,7 +252,7 @@ rc::Gen<double> fraction() {
 // Nothing comes nearer to the eye than half the centre's depth, so nothing reaches further in the window than
 // twice what the exact filter does: a splat is larger than the frame only where the filter is larger than
 // half of it. Edge-on, too, and up to the size that the recorder draws.
-RC_GTEST_PROP(SpecialCasesOfThePaper, no_corner_comes_nearer_than_half_the_depth, ()) {
+RC_GTEST_PROP(SpecialCasesOfThePaper, NoCornerComesNearerThanHalfTheDepth, ()) {
   const View view = exact_view();
   const double depth = view.near_plane * std::pow(8000.0, std::abs(*fraction()));
   const glm::dvec3 o{depth * *fraction(), depth * *fraction(), depth};

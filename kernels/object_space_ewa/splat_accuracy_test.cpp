@@ -29,7 +29,7 @@ SplatErrors measure(Arithmetic arithmetic, const SplatProgram& program, std::uin
 class EwaAccuracy : public testing::TestWithParam<SplatProgram> {};
 INSTANTIATE_TEST_SUITE_P(Programs, EwaAccuracy, testing::ValuesIn(ewa_programs()), program_name);
 
-TEST_P(EwaAccuracy, ieee) {
+TEST_P(EwaAccuracy, Ieee) {
   const SplatErrors errors = measure(Arithmetic::ieee, GetParam(), 2002);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 0.005);
@@ -42,7 +42,7 @@ TEST_P(EwaAccuracy, ieee) {
 // for one: programs that take the plane by its normal turn an error of 1e-3 of the low-pass filter's pixel,
 // from a variance matrix whose eigenvalues are 1 and 1e4, into 0.13 pixel by the perspective of a splat 280
 // pixels wide at cos = 1e-3.
-TEST_P(EwaAccuracy, nv20) {
+TEST_P(EwaAccuracy, Nv20) {
   const SplatErrors errors = measure(Arithmetic::nv20, GetParam(), 2003);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 0.005);
@@ -51,7 +51,7 @@ TEST_P(EwaAccuracy, nv20) {
 }
 
 // The guards cost nothing where a surfel is small: 1/1000 pixel.
-TEST_P(EwaAccuracy, tiny_surfels) {
+TEST_P(EwaAccuracy, TinySurfels) {
   SurfelRanges ranges;
   ranges.spacing[0] = 1e-3;
   ranges.spacing[1] = 0.05;
@@ -63,7 +63,7 @@ TEST_P(EwaAccuracy, tiny_surfels) {
 
 // Appendix A turns by 45 degrees at most: an edge of the quad lies along its own axis of the surfel at least
 // as much as along the other, so a corner is drawn where its weight belongs.
-TEST(SplatAccuracy, corners_keep_to_their_own_weights) {
+TEST(SplatAccuracy, CornersKeepToTheirOwnWeights) {
   const View view = test_view();
   std::mt19937 generator(2006);
   const std::vector<Surfel> surfels = random_surfels(view, {}, kCount, generator);
@@ -79,7 +79,7 @@ TEST(SplatAccuracy, corners_keep_to_their_own_weights) {
   }
 }
 
-TEST(SplatAccuracy, plain_in_ieee) {
+TEST(SplatAccuracy, PlainInIeee) {
   const SplatErrors errors = measure(Arithmetic::ieee, plain_program(), 2005);
   EXPECT_LT(errors.deviation, 0.005);
   EXPECT_LT(errors.weight, 1e-6);

@@ -49,7 +49,7 @@ void compare(const View& view, std::span<const Surfel> surfels, const FastSettin
   EXPECT_NEAR(weight / expected, 1, 1e-4);
 }
 
-TEST(FastSplatting, sphere_is_that_of_the_double_precision_renderer) {
+TEST(FastSplatting, SphereIsThatOfTheDoublePrecisionRenderer) {
   const std::vector<Surfel> surfels = sphere(9001);  // no whole number of registers
   FastSettings settings{.depth_offset = sphere_spacing(9001)};
   compare(sphere_view(160), surfels, settings);
@@ -61,7 +61,7 @@ TEST(FastSplatting, sphere_is_that_of_the_double_precision_renderer) {
 }
 
 // Surfels in every direction, through the near plane, before it and beyond the far plane.
-TEST(FastSplatting, surfels_everywhere) {
+TEST(FastSplatting, SurfelsEverywhere) {
   constexpr std::uint32_t kSeed = 31;
   std::printf("seed %u\n", kSeed);
   std::mt19937 generator(kSeed);
@@ -73,7 +73,7 @@ TEST(FastSplatting, surfels_everywhere) {
   EXPECT_LT(picture.left_out, 150u);
 }
 
-TEST(FastSplatting, surfels_that_cannot_be_drawn_leave_no_trace) {
+TEST(FastSplatting, SurfelsThatCannotBeDrawnLeaveNoTrace) {
   std::vector<Surfel> surfels(7);
   for (Surfel& surfel : surfels) {
     surfel.tangent_s = {0.1, 0, 0};
@@ -96,7 +96,7 @@ TEST(FastSplatting, surfels_that_cannot_be_drawn_leave_no_trace) {
   EXPECT_GE(picture.left_out, 5u);
 }
 
-TEST(FastSplatting, same_bits_for_any_number_of_threads_and_every_simd_target) {
+TEST(FastSplatting, SameBitsForAnyNumberOfThreadsAndEverySimdTarget) {
   const std::vector<Surfel> surfels = sphere(9001);
   const View view = sphere_view(160);
   FastSplatting splatting(surfels);

@@ -7,7 +7,7 @@
 namespace splatscope::kernels {
 namespace {
 
-TEST(FilterValue, gaussian_within_its_cutoff) {
+TEST(FilterValue, GaussianWithinItsCutoff) {
   ReferenceSettings settings;  // c = 1: sqrt 2
   EXPECT_DOUBLE_EQ(filter_value(settings, {1.4, -1.4}), std::exp(-1.96));
   EXPECT_EQ(filter_value(settings, {1.42, 0.0}), 0.0);

@@ -37,7 +37,7 @@ void expect_color(const glm::dvec4& pixel, const glm::dvec4& expected) {
   for (int c = 0; c < 4; ++c) EXPECT_NEAR(pixel[c], expected[c], 1e-12) << c;
 }
 
-TEST(LayeredSplatting, the_thresholds_three_outcomes) {
+TEST(LayeredSplatting, TheThresholdsThreeOutcomes) {
   const LayeredSettings settings{.same_surface = 0.5};
   const Surfel near = disc(0, kRed), same = disc(0.4, kGreen), far = disc(2, kBlue);
   // Replaced by what is nearer, in either order; what is further is dropped.
@@ -55,7 +55,7 @@ TEST(LayeredSplatting, the_thresholds_three_outcomes) {
   EXPECT_GT(picture.outcomes.dropped, 100u);
 }
 
-TEST(LayeredSplatting, layers_blend_front_to_back_in_any_order) {
+TEST(LayeredSplatting, LayersBlendFrontToBackInAnyOrder) {
   LayeredSettings settings{.same_surface = 0.5, .layers = 3, .background = {0.2, 0.2, 0.2}};
   const std::array discs{disc(0, kRed), disc(2, kGreen), disc(4, kBlue)};
   const std::array opacities{0.5, 0.25, 0.8};
@@ -78,7 +78,7 @@ TEST(LayeredSplatting, layers_blend_front_to_back_in_any_order) {
 }
 
 // A sheet of surfels that ends at x = 0 covers its pixels as the integral of the filter says.
-TEST(LayeredSplatting, coverage_of_an_edge_is_that_of_the_filter) {
+TEST(LayeredSplatting, CoverageOfAnEdgeIsThatOfTheFilter) {
   constexpr double kSpacing = 0.05;
   std::vector<Surfel> surfels;
   for (int row = -60; row <= 60; ++row) {
@@ -108,7 +108,7 @@ TEST(LayeredSplatting, coverage_of_an_edge_is_that_of_the_filter) {
 
 // On a closed surface with its back culled, one layer gives the colours of the two-pass renderer wherever
 // that one has no other surface near.
-TEST(LayeredSplatting, sphere_is_that_of_the_two_pass_renderer) {
+TEST(LayeredSplatting, SphereIsThatOfTheTwoPassRenderer) {
   constexpr int kPoints = 9001;
   const std::vector<Surfel> surfels = sphere(kPoints);
   const View view = sphere_view(160);
@@ -132,7 +132,7 @@ TEST(LayeredSplatting, sphere_is_that_of_the_two_pass_renderer) {
   EXPECT_GT(compared, static_cast<std::size_t>(0.95 * static_cast<double>(covered)));
 }
 
-TEST(LayeredSplatting, same_bits_for_any_number_of_threads) {
+TEST(LayeredSplatting, SameBitsForAnyNumberOfThreads) {
   constexpr int kPoints = 9001;
   const std::vector<Surfel> surfels = sphere(kPoints);
   const std::vector<double> opacities(surfels.size(), 0.6);

@@ -53,7 +53,7 @@ double convolved(const Surfel& surfel, const SurfelFilter& filter, const glm::dv
   return surfel.weight * sum * kStep * kStep;
 }
 
-TEST(ScreenSpace, one_splat_is_the_convolution_of_eq_3) {
+TEST(ScreenSpace, OneSplatIsTheConvolutionOfEq3) {
   View view = test_view();
   view.near_plane = 0.1;  // the surfel's plane is within range under every pixel asked for
   view.far_plane = 100;
@@ -149,16 +149,16 @@ void compare_with_brute_force(ScreenMap map, const ReferenceSettings& filter, st
   EXPECT_GT(occluded, 300);
 }
 
-TEST(ScreenSpace, brute_force_affine) {
+TEST(ScreenSpace, BruteForceAffine) {
   compare_with_brute_force(ScreenMap::affine, {.cutoff = 1.5, .shape = CutoffShape::circle}, 21);
 }
-TEST(ScreenSpace, brute_force_perspective) {
+TEST(ScreenSpace, BruteForcePerspective) {
   compare_with_brute_force(ScreenMap::perspective, {.cutoff = 1.5, .shape = CutoffShape::circle}, 22);
 }
-TEST(ScreenSpace, brute_force_square) {
+TEST(ScreenSpace, BruteForceSquare) {
   compare_with_brute_force(ScreenMap::perspective, {.cutoff = 1, .shape = CutoffShape::square}, 11);
 }
-TEST(ScreenSpace, brute_force_plain) {
+TEST(ScreenSpace, BruteForcePlain) {
   compare_with_brute_force(ScreenMap::perspective,
                            {.prefilter = false, .cutoff = 2, .shape = CutoffShape::square}, 13);
 }
@@ -184,7 +184,7 @@ View view_from_above() {
   return look_at({0, 5, 0}, {0, 0, 0}, {0, 0, 1}, 40.0, 96, 64, 1.0, 20.0);
 }
 
-TEST(ScreenSpace, nothing_of_a_plane_is_hidden) {
+TEST(ScreenSpace, NothingOfAPlaneIsHidden) {
   const std::vector<Surfel> surfels = plane(0.4, {0.2, 0.4, 0.9});
   ScreenSpaceSettings settings = settings_of(ScreenMap::perspective);
   settings.depth_offset = 0.1;
@@ -195,7 +195,7 @@ TEST(ScreenSpace, nothing_of_a_plane_is_hidden) {
 
 // Right of the middle the rising plane is nearer, left of it the falling one; each hides the other where they
 // are further apart along the ray than z_t.
-TEST(ScreenSpace, crossing_surfaces_hide_each_other) {
+TEST(ScreenSpace, CrossingSurfacesHideEachOther) {
   std::vector<Surfel> surfels = plane(0.5, {1, 0, 0});
   const std::vector<Surfel> falling = plane(-0.5, {0, 1, 0});
   surfels.insert(surfels.end(), falling.begin(), falling.end());
@@ -217,7 +217,7 @@ TEST(ScreenSpace, crossing_surfaces_hide_each_other) {
 }
 
 // The planes of large surfels reach past the eye.
-TEST(ScreenSpace, near_plane_crossing_stays_finite) {
+TEST(ScreenSpace, NearPlaneCrossingStaysFinite) {
   Surfel surfel = tilted_surfel();
   surfel.position = {0, 0, 0};
   surfel.tangent_s = {5, 0, 5};
@@ -233,7 +233,7 @@ TEST(ScreenSpace, near_plane_crossing_stays_finite) {
   EXPECT_GT(largest, 0.1);
 }
 
-TEST(ScreenSpace, same_bits_for_any_number_of_threads) {
+TEST(ScreenSpace, SameBitsForAnyNumberOfThreads) {
   std::mt19937 generator(23);
   const std::vector<Surfel> surfels = random_surfels(9000, generator);  // more than two chunks
   ScreenSpaceSettings settings = settings_of(ScreenMap::affine);
@@ -248,7 +248,7 @@ TEST(ScreenSpace, same_bits_for_any_number_of_threads) {
   EXPECT_EQ(one.normalized, four.normalized);
 }
 
-TEST(ScreenSpace, back_faces_are_left_out_on_demand) {
+TEST(ScreenSpace, BackFacesAreLeftOutOnDemand) {
   std::vector<Surfel> surfels{tilted_surfel(), tilted_surfel()};
   std::swap(surfels[1].tangent_s, surfels[1].tangent_t);  // the normal s x t turned about
   surfels[1].color = {1, 0, 0};
@@ -266,7 +266,7 @@ TEST(ScreenSpace, back_faces_are_left_out_on_demand) {
             screen_space_ewa(view, {&surfels[glm::dot(normal, o) > 0 ? 1 : 0], 1}, settings).sums);
 }
 
-TEST(ScreenSpace, surfels_that_cannot_be_drawn_leave_no_trace) {
+TEST(ScreenSpace, SurfelsThatCannotBeDrawnLeaveNoTrace) {
   const View view = look_at({0, 0, -2}, {0, 0, 0}, {0, 1, 0}, 90.0, 100, 100, 0.1, 10.0);
   std::vector<Surfel> surfels(5);
   for (Surfel& surfel : surfels) {

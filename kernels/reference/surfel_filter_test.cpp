@@ -28,7 +28,7 @@ void expect_near(const glm::dmat2& a, const glm::dmat2& b, double tolerance) {
   }
 }
 
-TEST(View, target_is_in_the_middle_and_up_is_up) {
+TEST(View, TargetIsInTheMiddleAndUpIsUp) {
   const View view = test_view();
   const glm::dvec2 middle = view.window(view.camera_space({0.1, 0.4, 1.0}));
   EXPECT_NEAR(middle.x, 320.5, 1e-9);
@@ -38,7 +38,7 @@ TEST(View, target_is_in_the_middle_and_up_is_up) {
   EXPECT_NEAR(view.eta, 256.0 / std::tan(std::acos(-1.0) / 6.0), 1e-9);
 }
 
-TEST(SurfelFilter, jacobian_is_the_derivative_of_the_projection) {
+TEST(SurfelFilter, JacobianIsTheDerivativeOfTheProjection) {
   const View view = test_view();
   const Surfel surfel = tilted_surfel();
   const glm::dmat2 jacobian = surfel_filter(view, surfel, true)->jacobian;
@@ -53,7 +53,7 @@ TEST(SurfelFilter, jacobian_is_the_derivative_of_the_projection) {
 }
 
 // J M J^T = sigma^2 J J^T + I (Eq. 5), and Eq. 11.
-TEST(SurfelFilter, screen_space_filter_and_decomposition) {
+TEST(SurfelFilter, ScreenSpaceFilterAndDecomposition) {
   const View view = test_view();
   const Surfel surfel = tilted_surfel();
   const SurfelFilter filter = *surfel_filter(view, surfel, true);
@@ -65,14 +65,14 @@ TEST(SurfelFilter, screen_space_filter_and_decomposition) {
   EXPECT_GT(glm::length(filter.axes[0]), glm::length(filter.axes[1]));
 }
 
-TEST(SurfelFilter, reconstruction_filter_alone) {
+TEST(SurfelFilter, ReconstructionFilterAlone) {
   const SurfelFilter filter = *surfel_filter(test_view(), tilted_surfel(), false);
   expect_near(filter.axes, glm::dmat2(0.7), 1e-15);
   EXPECT_NEAR(filter.determinant, std::pow(0.7, 4), 1e-15);
 }
 
 // A plane that faces the camera: J is a multiple of I on the axis, t = 0, and the axes are those of s and t.
-TEST(SurfelFilter, facing_plane) {
+TEST(SurfelFilter, FacingPlane) {
   const View view = look_at({0, 0, -2}, {0, 0, 0}, {0, 1, 0}, 90.0, 100, 100, 0.1, 10.0);
   Surfel surfel;
   surfel.tangent_s = {0.1, 0, 0};
@@ -84,7 +84,7 @@ TEST(SurfelFilter, facing_plane) {
 }
 
 // cos = 1e-6: from the entries of M the smaller eigenvalue would be lost.
-TEST(SurfelFilter, edge_on_keeps_the_small_axis) {
+TEST(SurfelFilter, EdgeOnKeepsTheSmallAxis) {
   const View view = look_at({0, 0, -2}, {0, 0, 0}, {0, 1, 0}, 90.0, 100, 100, 0.1, 10.0);
   Surfel surfel;
   surfel.tangent_s = {0.1, 0, 0};
@@ -95,7 +95,7 @@ TEST(SurfelFilter, edge_on_keeps_the_small_axis) {
   EXPECT_NEAR(glm::length(filter.axes[0]) / 4e5, 1.0, 1e-6);
 }
 
-TEST(SurfelFilter, surfels_without_an_affine_map_have_none) {
+TEST(SurfelFilter, SurfelsWithoutAnAffineMapHaveNone) {
   const View view = look_at({0, 0, -2}, {0, 0, 0}, {0, 1, 0}, 90.0, 100, 100, 0.1, 10.0);
   Surfel surfel;
   surfel.tangent_s = {0.1, 0, 0};

@@ -156,7 +156,7 @@ Errors errors_of(std::string_view file, Arithmetic arithmetic, double low, doubl
   return errors;
 }
 
-TEST(VoxelPrograms, slots) {
+TEST(VoxelPrograms, Slots) {
   EXPECT_EQ(isa::slot_count(load(kVoxelGridProgram)), 28);
   EXPECT_EQ(isa::slot_count(load(kVoxelProgram)), 39);
   EXPECT_EQ(isa::slot_count(load(kSheetProgram)), 3);
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(Programs, VoxelAccuracy, testing::Values(kVoxelGridProg
 
 // Three times what was measured. A pixel's share of 512 in binary32 is 3e-5; the second pivot is 1/100 of
 // what it is the difference of, and for flat kernels of 50 pixels 1/2500.
-TEST_P(VoxelAccuracy, voxels_of_a_volume) {
+TEST_P(VoxelAccuracy, VoxelsOfAVolume) {
   for (const Arithmetic arithmetic : {Arithmetic::ieee, Arithmetic::nv20}) {
     const Errors errors = errors_of(GetParam(), arithmetic, 0.05, 10);
     EXPECT_LT(errors.deviation, 2e-5);
@@ -177,14 +177,14 @@ TEST_P(VoxelAccuracy, voxels_of_a_volume) {
   }
 }
 
-TEST_P(VoxelAccuracy, flat_and_long_kernels) {
+TEST_P(VoxelAccuracy, FlatAndLongKernels) {
   const Errors errors = errors_of(GetParam(), Arithmetic::ieee, 0.005, 50);
   EXPECT_LT(errors.deviation, 3e-4);
   EXPECT_LT(errors.peak, 3e-4);
 }
 
 // Without any one instruction some voxel comes out otherwise: nothing is padding.
-TEST_P(VoxelAccuracy, every_instruction_changes_an_output) {
+TEST_P(VoxelAccuracy, EveryInstructionChangesAnOutput) {
   const View view = test_view();
   std::mt19937 generator(7);
   std::vector<Voxel> voxels;
@@ -201,7 +201,7 @@ TEST_P(VoxelAccuracy, every_instruction_changes_an_output) {
   }
 }
 
-TEST_P(VoxelAccuracy, depth_colour_and_texture_coordinates) {
+TEST_P(VoxelAccuracy, DepthColourAndTextureCoordinates) {
   const View view = test_view();
   std::mt19937 generator(11);
   const std::array voxels{random_voxel(view, 0.2, 5, generator)};
@@ -223,7 +223,7 @@ TEST_P(VoxelAccuracy, depth_colour_and_texture_coordinates) {
 }
 
 // A vertex buffer of grid indices: the matrix from them to object space goes into the constants.
-TEST(VoxelPrograms, positions_in_units_of_the_grid) {
+TEST(VoxelPrograms, PositionsInUnitsOfTheGrid) {
   const View view = test_view();
   const glm::dmat4 to_object(0.01, 0, 0, 0, 0, 0.02, 0, 0, 0, 0, 0.03, 0, 0.5, -0.25, 0.125, 1);
   const Voxel on_grid{{17, -5, 9}, glm::dmat3(1e-4, 0, 0, 0, 4e-4, 0, 0, 0, 9e-4)};
@@ -238,7 +238,7 @@ TEST(VoxelPrograms, positions_in_units_of_the_grid) {
   EXPECT_LT(errors.peak, 1e-5);
 }
 
-TEST(VoxelPrograms, pixel_programs_load) {
+TEST(VoxelPrograms, PixelProgramsLoad) {
   for (const int steps : {255, 32, 1}) {
     const ShaderText text = voxel_pixel_program(steps);
     EXPECT_EQ(isa::slot_count(isa::load(text.text, text.name)), 4);

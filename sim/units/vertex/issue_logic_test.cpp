@@ -50,29 +50,29 @@ Ends ends_of(const std::string& text, const Machine::Vertex& spec, std::size_t c
 
 // The threads issue in turn: 0 1 2, 0 1 2, ... then nothing in cycle 12, as thread 0 issued last in 9 and is
 // reloaded in 10, 11 and 12.
-TEST(IssueLogic, three_threads_of_four_slots_take_turns) {
+TEST(IssueLogic, ThreeThreadsOfFourSlotsTakeTurns) {
   EXPECT_EQ(ends_of(kTransform, unit_of(3, 3), 6),
             (Ends{{9, 0}, {10, 1}, {11, 2}, {22, 0}, {23, 1}, {24, 2}}));
 }
 
-TEST(IssueLogic, one_thread_without_reloading_issues_in_every_cycle) {
+TEST(IssueLogic, OneThreadWithoutReloadingIssuesInEveryCycle) {
   EXPECT_EQ(ends_of(kTransform, unit_of(1, 0), 3), (Ends{{3, 0}, {7, 0}, {11, 0}}));
 }
 
-TEST(IssueLogic, waits_for_an_operand) {
+TEST(IssueLogic, WaitsForAnOperand) {
   // Issue in 0, 3, 6; a second thread fills the clocks between: 1, 4, 7.
   const std::string chain = "add r0, v0, c0\nadd r0, r0, c0\nmov oPos, r0\n";
   EXPECT_EQ(ends_of(chain, unit_of(1, 0), 2), (Ends{{6, 0}, {13, 0}}));
   EXPECT_EQ(ends_of(chain, unit_of(2, 0), 2), (Ends{{6, 0}, {7, 1}}));
 }
 
-TEST(IssueLogic, one_scalar_instruction_in_two_clocks) {
+TEST(IssueLogic, OneScalarInstructionInTwoClocks) {
   // Thread 0 issues its RCP in 0; thread 1's has to wait for cycle 2; moves in 3 and 5.
   const std::string reciprocal = "rcp r0.x, c0.x\nmov oPos, r0.x\n";
   EXPECT_EQ(ends_of(reciprocal, unit_of(2, 8), 2), (Ends{{3, 0}, {5, 1}}));
 }
 
-TEST(IssueLogic, a_short_result_does_not_overtake_a_long_one) {
+TEST(IssueLogic, AShortResultDoesNotOvertakeALongOne) {
   // r0.x: RSQ in 0, there in 9. MOV may write it in 8 at the earliest, to be there in 9; oPos in 9.
   Machine::Vertex spec = unit_of(1, 0);
   spec.vector_latency = 1;
@@ -80,7 +80,7 @@ TEST(IssueLogic, a_short_result_does_not_overtake_a_long_one) {
   EXPECT_EQ(ends_of("rsq r0.x, c0.x\nmov r0.x, c1\nmov oPos, r0.x\n", spec, 1), (Ends{{9, 0}}));
 }
 
-TEST(IssueLogic, results_come_after_the_last_slot) {
+TEST(IssueLogic, ResultsComeAfterTheLastSlot) {
   Machine::Vertex spec = unit_of(1, 0);
   spec.scalar_latency = 9;
   const auto slots = issue_slots(program_of("rsq r0.x, c0.x\nmov oPos, c0\n"), spec);
@@ -97,7 +97,7 @@ TEST(IssueLogic, results_come_after_the_last_slot) {
   EXPECT_EQ(logic.next_free(), 0u);
 }
 
-TEST(IssueLogic, no_more_vertices_than_threads) {
+TEST(IssueLogic, NoMoreVerticesThanThreads) {
   const Machine::Vertex spec = unit_of(2, 0);
   const auto slots = issue_slots(program_of(kTransform), spec);
   IssueLogic logic(slots, spec);
@@ -109,16 +109,16 @@ TEST(IssueLogic, no_more_vertices_than_threads) {
 }
 
 // NVIDIA's 125 M vertices a second of two units at 275 MHz are 4.4.
-TEST(Throughput, transform_on_the_geforce4) {
+TEST(Throughput, TransformOnTheGeforce4) {
   EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load(machine::kGeForce4).vertex),
                    13.0 / 3);
 }
 
-TEST(Throughput, transform_on_the_radeon) {
+TEST(Throughput, TransformOnTheRadeon) {
   EXPECT_DOUBLE_EQ(clocks_per_vertex(program_of(kTransform), machine::load(machine::kRadeon8500).vertex), 4);
 }
 
-TEST(Throughput, says_which_slot_waits) {
+TEST(Throughput, SaysWhichSlotWaits) {
   const auto slots = issue_slots(program_of("add r0, v0, c0\nadd r0, r0, c0\nmov oPos, r0\n"), unit_of(1, 4));
   const Throughput steady = throughput(slots, unit_of(1, 4));
   EXPECT_DOUBLE_EQ(steady.clocks_per_vertex, 11);
@@ -127,7 +127,7 @@ TEST(Throughput, says_which_slot_waits) {
 
 // Two slots a vertex, of which the scalar unit takes one every `scalar_interval` clocks. Four threads in step
 // would issue RCP in 0, 2, 4, 6 and MOV in 3, 5, 7, 9: 2.5 clocks a vertex.
-TEST(Throughput, threads_spread_out_over_the_scalar_unit) {
+TEST(Throughput, ThreadsSpreadOutOverTheScalarUnit) {
   const isa::Program program = program_of("rcp r0.x, c0.x\nmov oPos, r0.x\n");
   Machine::Vertex spec = unit_of(4, 0);
   EXPECT_DOUBLE_EQ(clocks_per_vertex(program, spec), 2);
@@ -137,7 +137,7 @@ TEST(Throughput, threads_spread_out_over_the_scalar_unit) {
 
 // Two a thread, which leave a long pipeline one after the other. Three threads issue in turn, so that a
 // vertex issues in clocks 1, 4 and 7.
-TEST(Throughput, no_more_vertices_are_on_their_way_than_the_unit_holds) {
+TEST(Throughput, NoMoreVerticesAreOnTheirWayThanTheUnitHolds) {
   const isa::Program program = program_of("mov oPos, v0\nmov oD0, v1\nmov oT0, v2\n");
   Machine::Vertex spec = unit_of(1, 0);
   spec.vector_latency = 64;
@@ -147,7 +147,7 @@ TEST(Throughput, no_more_vertices_are_on_their_way_than_the_unit_holds) {
 }
 
 // r0.x: MOV in 0, there in 9. RSQ may write it in 8 at the earliest, to be there in 9; oPos in 9.
-TEST(IssueLogic, a_short_scalar_result_does_not_overtake_a_long_one) {
+TEST(IssueLogic, AShortScalarResultDoesNotOvertakeALongOne) {
   Machine::Vertex spec = unit_of(1, 0);
   spec.vector_latency = 9;
   spec.scalar_latency = 1;

@@ -32,7 +32,7 @@ std::vector<IssueSlot> chain(std::size_t count) {
   return slots;
 }
 
-TEST(IssueReplay, a_steady_stream_goes_round_a_few_states) {
+TEST(IssueReplay, ASteadyStreamGoesRoundAFewStates) {
   const auto slots = chain(78);
   IssueReplay replay(slots, three_threads());
   std::size_t settled = 0;
@@ -51,7 +51,7 @@ TEST(IssueReplay, a_steady_stream_goes_round_a_few_states) {
 
 // Vertices come at random; the logic goes cycle by cycle, the replay from event to event, with a table that
 // is always full and with one that never is.
-TEST(IssueReplay, does_what_the_logic_does) {
+TEST(IssueReplay, DoesWhatTheLogicDoes) {
   std::mt19937 random(random_seed());
   for (const std::size_t most_states : {2u, 16u, 100'000u}) {
     const auto slots = chain(1 + random() % 40);

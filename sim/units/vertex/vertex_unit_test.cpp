@@ -156,34 +156,34 @@ Arrivals arrivals_of(const Case& test) {
 
 // The source pushes in 0; the unit takes in 1, issues in 2 to 5, has the last result in 8 and passes it on,
 // seen in 9. The next vertex is taken in 5.
-TEST(VertexUnit, one_thread) {
+TEST(VertexUnit, OneThread) {
   EXPECT_EQ(arrivals_of(transform_case(1, 0, 3)), (Arrivals{{9, 0}, {13, 1}, {17, 2}}));
 }
 
-TEST(VertexUnit, reloading_a_thread_takes_time) {
+TEST(VertexUnit, ReloadingAThreadTakesTime) {
   EXPECT_EQ(arrivals_of(transform_case(1, 3, 3)), (Arrivals{{9, 0}, {16, 1}, {23, 2}}));
 }
 
 // Taken in 1, 2 and 3, issued in turn from 2 on: thread 0 in 2, 5, 8 and 11. It takes the next vertex in 14.
-TEST(VertexUnit, three_threads) {
+TEST(VertexUnit, ThreeThreads) {
   EXPECT_EQ(arrivals_of(transform_case(3, 3, 6)),
             (Arrivals{{15, 0}, {16, 1}, {17, 2}, {28, 3}, {29, 4}, {30, 5}}));
 }
 
 // Taken in 1, last slot in 5, reloaded for ten clocks after that, then told in 16 that the draw ends.
-TEST(VertexUnit, is_busy_while_it_reloads) {
+TEST(VertexUnit, IsBusyWhileItReloads) {
   const Case test = transform_case(1, 10, 1);
   for (const Scheduler scheduler : {Scheduler::skip_ahead, Scheduler::referee})
     EXPECT_EQ(run(test, scheduler).books[Step::kBusy], 16u);
 }
 
-TEST(VertexUnit, holds_two_vertices_a_thread) {
+TEST(VertexUnit, HoldsTwoVerticesAThread) {
   Case test = transform_case(3, 3, 20);
   test.pauses = {10'000'000};
   EXPECT_EQ(run(test, Scheduler::skip_ahead).taken, 1u + 4u + 6u);  // one to the sink, four in the channel
 }
 
-TEST(VertexUnit, is_blocked_by_a_full_channel) {
+TEST(VertexUnit, IsBlockedByAFullChannel) {
   Case test = transform_case(1, 0, 20);
   test.pauses = {99};
   const Outcome outcome = run(test, Scheduler::skip_ahead);
@@ -234,7 +234,7 @@ Case random_case(std::mt19937& random) {
   return test;
 }
 
-TEST(VertexUnit, referee_and_skip_ahead_agree) {
+TEST(VertexUnit, RefereeAndSkipAheadAgree) {
   std::mt19937 random(random_seed());
   for (int i = 0; i < 150; ++i) {
     SCOPED_TRACE("case " + std::to_string(i));
