@@ -100,18 +100,23 @@ void check_size(const PlyHeader& header, const PlyElement& vertex, std::uintmax_
                                 vertex.name == "vertex" ? "vertices" : vertex.name + " elements", file_size));
 }
 
-// assimp scales the values of other types by what is not their range.
-void check_mesh_colors(const PlyHeader& header, const std::string& file) {
+// assimp scales colours of other types by what is not their range, and takes what is missing of a group for
+// zeros.
+void check_mesh_vertex(const PlyHeader& header, const std::string& file) {
   constexpr std::string_view kColors[] = {"red", "green", "blue", "r", "g", "b"};  // of assimp's
   constexpr PlyType kTypes[] = {PlyType::uint8, PlyType::uint16, PlyType::float32, PlyType::float64};
-  for (const PlyElement& element : header.elements)
-    for (const PlyProperty& property : element.properties)
-      if (element.name == "vertex" && std::ranges::find(kColors, property.name) != std::end(kColors) &&
-          std::ranges::find(kTypes, property.type) == std::end(kTypes))
-        throw UserError(file, 0,
-                        fmt::format("the type of \"{}\" is none that colours of a mesh are read in, expected "
-                                    "uchar, ushort, float or double",
-                                    property.name));
+  const auto vertex = std::ranges::find(header.elements, "vertex", &PlyElement::name);
+  if (vertex == header.elements.end()) return;
+  has_group(*vertex, {"x", "y", "z"}, file);
+  has_group(*vertex, {"nx", "ny", "nz"}, file);
+  has_group(*vertex, {"red", "green", "blue"}, file);
+  for (const PlyProperty& property : vertex->properties)
+    if (std::ranges::find(kColors, property.name) != std::end(kColors) &&
+        std::ranges::find(kTypes, property.type) == std::end(kTypes))
+      throw UserError(file, 0,
+                      fmt::format("the type of \"{}\" is none that colours of a mesh are read in, expected "
+                                  "uchar, ushort, float or double",
+                                  property.name));
 }
 
 std::ifstream open(const std::filesystem::path& path) {
@@ -142,17 +147,8 @@ bool ply_has_faces(const std::filesystem::path& path) {
       throw UserError(file, 0, "holds triangle strips, expected a mesh of faces, or points alone");
     faces |= element.name == "face" && element.count > 0;
   }
-  if (faces) check_mesh_colors(header, file);
+  if (faces) check_mesh_vertex(header, file);
   return faces;
-}
-
-void expect_whole_ply(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  std::ifstream in = open(path);
-  const PlyHeader header = read_ply_header(in, file);
-  const auto values = ply_values(in, file, std::filesystem::file_size(path), header);
-  for (const PlyElement& element : header.elements) skip_element(*values, element);
-  values->end();
 }
 
 void write_ply(std::span<const Surfel> surfels, const std::filesystem::path& path) {

@@ -29,13 +29,9 @@ inline constexpr std::uint64_t kMostSurfels = 1 << 26;  // of a file
 PointFile read_ply(const std::filesystem::path& path);
 
 // Whether a PLY file has an element "face" that is not empty: a mesh. Throws UserError where the header is
-// wrong or counts more than the file can hold, and where it has triangle strips, or colours of vertices in a
-// type, that assimp reads wrongly.
+// wrong or counts more than the file can hold, and where a mesh has triangle strips, or vertices with half a
+// group of properties or colours of a type, that assimp reads wrongly.
 bool ply_has_faces(const std::filesystem::path& path);
-
-// Reads over all that follows the header of a PLY file, of points or a mesh, and throws UserError as read_ply
-// does where that is not what the header says.
-void expect_whole_ply(const std::filesystem::path& path);
 
 // Writes what read_ply reads, as a binary file: position, normal, radius, and color in 8 bits. Whole or not
 // at all (output_files.h).

@@ -124,7 +124,12 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
     counts.materials_unreadable = file.materials_unreadable;
     model = std::move(file.model);
     if (model.mesh.triangles.empty())
-      throw UserError((folder / source.file).string(), 0, "no triangle of it has a surface, expected a mesh");
+      throw UserError(
+          (folder / source.file).string(), 0,
+          fmt::format("no triangle of it has a surface ({} not finite, {} with a corner that does "
+                      "not exist, {} without area), expected a mesh",
+                      counts.triangles_not_finite, counts.triangles_out_of_range,
+                      counts.triangles_degenerate));
   }
   ModelOptions options;
   options.count = source.count > 0      ? static_cast<std::size_t>(source.count)

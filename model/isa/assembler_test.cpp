@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,15 @@ TEST(Assembler, ReadsOperandsMasksAndNegation) {
   EXPECT_EQ(mad.sources[0], (Source{RegisterFile::input, 0, {3, 2, 1, 1}, true}));
   EXPECT_EQ(mad.sources[1], (Source{RegisterFile::constant, 3, {1, 1, 1, 1}, false, true}));
   EXPECT_EQ(mad.sources[2], (Source{RegisterFile::temporary, 0}));
+}
+
+TEST(Assembler, ANumberTooSmallIsZero) {
+  const Program program = assemble("vs_1_1\ndef c0, 1e-50, -1e-50, 1e-400, 1.4e-45\nmov oPos, c0\n", "a");
+  const auto& [a, b, c, least] = program.definitions[0].values;
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(a), 0u);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(b), 0x80000000u);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(c), 0u);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(least), 1u);
 }
 
 // Numbers before and in the brackets add up, as D3DX reads them.
@@ -108,6 +118,8 @@ TEST(Assembler, ErrorsNameFileLineColumnAndRule) {
   EXPECT_EQ(error_of("ps_1_1\nmov r0, 1-\n"), "a.vs:2:11: the line ends here, expected a register of ps_1_1");
   EXPECT_EQ(error_of("vs_1_1\ndef c0, 1, -1e99, 0, 0\n"),
             "a.vs:2:13: '1e99' stands here, expected a number of 32 bits");
+  EXPECT_EQ(error_of("vs_1_1\ndef c0, 3.4028236e+38, 0, 0, 0\n"),
+            "a.vs:2:9: '3.4028236e+38' stands here, expected a number of 32 bits");
   EXPECT_EQ(error_of(std::string("vs_1_1\nmov oPos, v0 \0 x\n", 24)),
             "a.vs:2:14: the byte 0x00 stands here, expected the end of the line");
   EXPECT_EQ(error_of("vs_1_1\nmov oPos, v0 \u00e9\n"),

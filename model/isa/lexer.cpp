@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "model/error.h"
 
@@ -124,7 +125,12 @@ std::string Lexer::found() const {
   if (const auto byte = static_cast<unsigned char>(peek()); byte <= ' ' || byte > '~')
     return fmt::format("the byte 0x{:02x} stands here", byte);
   std::size_t end = position_;
-  while (end < text_.size() && is_word(text_[end])) ++end;
+  const bool number = std::isdigit(static_cast<unsigned char>(peek())) != 0;
+  const auto goes_on = [&](std::size_t at) {
+    const bool sign = text_[at] == '-' || text_[at] == '+';
+    return is_word(text_[at]) || (number && (text_[at] == '.' || (sign && text_[at - 1] == 'e')));
+  };
+  while (end < text_.size() && goes_on(end)) ++end;
   const std::size_t shown = std::clamp<std::size_t>(end - position_, 1, kLongestShown);
   return fmt::format("'{}' stands here", std::string_view(text_).substr(position_, shown));
 }
@@ -141,7 +147,8 @@ std::optional<float> Lexer::number() {
   float value = 0;
   const char* begin = text_.data() + position_;
   const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
-  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  if (error == std::errc::result_out_of_range) value = std::strtof(begin, nullptr);  // what is too small is 0
+  if (error == std::errc::invalid_argument || !std::isfinite(value)) return std::nullopt;
   for (const char* c = begin; c != end; ++c) advance();
   if (peek() == 'f') advance();
   return negative ? -value : value;

@@ -92,6 +92,11 @@ enum class RegisterFile : std::uint8_t {
   texture
 };
 
+// Whose writes name one component, which their tokens do not tell from all four.
+constexpr bool is_scalar(RegisterFile file) {
+  return file == RegisterFile::fog_out || file == RegisterFile::point_size_out;
+}
+
 struct Destination {
   RegisterFile file = RegisterFile::temporary;
   std::uint16_t index = 0;

@@ -16,10 +16,8 @@ std::uint32_t register_token(RegisterFile file, std::uint32_t index) {
 
 std::uint32_t token_of(const Destination& destination) {
   std::uint32_t token = register_token(destination.file, destination.index);
-  // oFog and oPts are scalars: their tokens carry the whole mask, whatever component the text names.
-  const bool scalar =
-      destination.file == RegisterFile::fog_out || destination.file == RegisterFile::point_size_out;
-  const std::uint32_t mask = scalar && std::has_single_bit(destination.mask) ? 0xfu : destination.mask;
+  const bool one = is_scalar(destination.file) && std::has_single_bit(destination.mask);
+  const std::uint32_t mask = one ? 0xfu : destination.mask;
   token |= mask << 16;
   token |= (static_cast<std::uint32_t>(destination.shift) & 0xf) << 24;
   return destination.saturate ? token | kSaturateBit : token;

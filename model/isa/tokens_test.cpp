@@ -64,6 +64,17 @@ TEST(Tokens, OfScalarsCarryTheWholeMask) {
   }
 }
 
+// Which component a scalar was given is lost in its tokens: a program whose text is valid stays so.
+TEST(Tokens, OfAScalarThatReadsOneComponentAreValid) {
+  const char* const start = "vs_1_1\nmov oPos, v0\nmov r0.z, v0.z\n";
+  for (const char* end : {"mov oFog.z, r0\n", "mov oPts.z, r0\n", "mul oFog.z, r0, v0\n"}) {
+    Program program = read_tokens(write_tokens(assemble(std::string(start) + end, "a")), "a");
+    EXPECT_NO_THROW(validate(program)) << end;
+  }
+  for (const char* end : {"mov oFog, r1\n", "dp3 oFog, r0, v0\n", "mov oFog, r0.x\n"})
+    EXPECT_THROW(validate(assemble(std::string(start) + end, "a")), UserError) << end;
+}
+
 // What is a colour before ps_1_4 has the letters of one.
 TEST(Tokens, ComponentsOfTexturesAreNamedByWhatTheyHold) {
   for (const char* text : {"ps_1_1\ntex t0\nmov r0, t0.a\n", "ps_1_4\ntexcrd r0.rgb, t0.xyz\nmov r0, c0\n"}) {

@@ -125,7 +125,9 @@ class VertexValidator {
       case RegisterFile::temporary:
         check_index(instruction, source.file, last, kVertexTemporaries);
         for (int index = source.index; index <= last; ++index)
-          check_written(instruction, index, components_read(instruction, number));
+          if (!reads_what_is_written(instruction, number, written_[static_cast<std::size_t>(index)]))
+            reject(program_, instruction,
+                   fmt::format("r{} is read before it is written (all the components read)", index));
         return;
       default:
         reject(program_, instruction,
@@ -133,10 +135,16 @@ class VertexValidator {
     }
   }
 
-  void check_written(const Instruction& instruction, int index, unsigned components) const {
-    if (components & ~written_[static_cast<std::size_t>(index)])
-      reject(program_, instruction,
-             fmt::format("r{} is read before it is written (all the components read)", index));
+  // Of what a scalar output may be given, one component has to be there.
+  static bool reads_what_is_written(Instruction instruction, int source, unsigned written) {
+    const auto is_there = [&] { return (components_read(instruction, source) & ~written) == 0; };
+    Destination& destination = instruction.destination;
+    if (!is_scalar(destination.file) || destination.mask != 0xf) return is_there();
+    for (const unsigned component : {0x1u, 0x2u, 0x4u, 0x8u}) {
+      destination.mask = static_cast<std::uint8_t>(component);
+      if (is_there()) return true;
+    }
+    return false;
   }
 
   void check_matrix(const Instruction& instruction) const {
@@ -149,7 +157,7 @@ class VertexValidator {
       reject(program_, instruction,
              fmt::format("this macro needs the write mask .{}",
                          std::string_view("xyzw").substr(0, static_cast<std::size_t>(rows))));
-    if (destination.file == RegisterFile::fog_out || destination.file == RegisterFile::point_size_out)
+    if (is_scalar(destination.file))
       reject(program_, instruction, "oFog and oPts are scalars, a macro writes several components");
     if (matrix.negate || matrix.swizzle != kIdentity)
       reject(program_, instruction, "the matrix of a macro takes no swizzle and no negation");

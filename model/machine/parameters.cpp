@@ -222,8 +222,8 @@ std::vector<Parameter> host_parameters() {
        "that such a read brings"},
       {"host.division_nanoseconds", "ns", real<&M::host, &M::Host::division_nanoseconds>(0, 1e6),
        "to divide a pixel's colour by its weight"},
-      {"host.write_bytes_per_clock", "bytes", integer<&M::host, &M::Host::write_bytes_per_clock>(1, 256),
-       "a bus clock, writing the frame buffer (posted)"},
+      {"host.write_bytes_per_clock", "bytes", integer<&M::host, &M::Host::write_bytes_per_clock>(1, 16),
+       "a bus clock, writing the frame buffer (posted; each pixel begins a clock of its own)"},
   };
 }
 

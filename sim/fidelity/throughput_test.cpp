@@ -252,6 +252,19 @@ TEST(Throughput, WhatIfAVertexEmitsFourCorners) {
   EXPECT_NEAR(vertex_clocks({.point_sprites = true}) / as_in_2002, 0.25, 0.01);
 }
 
+// What tells the corners apart is made by the unit, so no vertex brings it.
+TEST(Throughput, WhatIfAVertexEmitsFourCornersItReadsNoneOfThem) {
+  Draw draw;
+  draw.vertex_program = 1;
+  draw.vertex_stride = 24;
+  draw.attributes = {{.input = 0, .format = VertexFormat::float3, .offset = 0},
+                     {.input = 5, .format = VertexFormat::float2, .offset = 12},
+                     {.input = 7, .format = VertexFormat::float1, .offset = 20}};
+  EXPECT_EQ(bytes_of_vertex(draw, {}), 24);
+  EXPECT_EQ(bytes_of_vertex(draw, {.corner_inputs = {1u << 0, 1u << 5}}), 24 - 2 * 4);
+  EXPECT_EQ(bytes_of_vertex(draw, {.point_sprites = true}), 24);
+}
+
 TEST(Throughput, WhatIfAUnitDividesPixels) {
   RandomTrace made = testing::simple_trace(10);
   made.trace.commands.emplace_back(NormalizeOnHost{});

@@ -1,5 +1,7 @@
 #include "sim/observe/tile_cycles.h"
 
+#include <utility>
+
 #include "sim/machine.h"
 #include "sim/units/raster/rasteriser.h"
 
@@ -17,14 +19,15 @@ void TileCycles::begin(const SimulatedMachine& machine) {
     raster_ = raster;
     raster->on_quad([this](Cycle now, const QuadWork& quad) {
       tile_ = std::size_t{quad.y * 2 / kTile} * columns_ + quad.x * 2 / kTile;
+      cycles_[tile_] += std::exchange(before_, 0);
       count(now + 1);
     });
   }
 }
 
 void TileCycles::count(Cycle until) {
-  if (tile_ == kNone || until <= since_) return;
-  cycles_[tile_] += until - since_;
+  if (until <= since_) return;
+  (tile_ == kNone ? before_ : cycles_[tile_]) += until - since_;
   since_ = until;
 }
 

@@ -10,7 +10,7 @@ namespace splatscope::sim {
 // How long the rasteriser was at each 8x8-pixel tile of the frame: the cycles in which it was busy, starved
 // or blocked since the quad before, whatever tile that was in, count for a quad's tile; those after a draw's
 // last quad for the tile of that. Summed over all draws these are all the cycles in which it was not idle,
-// unless no quad followed or went before. Where the rasteriser waits because what is behind it is full, they
+// unless there is no quad at all. Where the rasteriser waits because what is behind it is full, they
 // tell what a tile cost from there on; where it is starved, what its triangles cost before.
 class TileCycles final : public Observer {
  public:
@@ -36,6 +36,7 @@ class TileCycles final : public Observer {
   const Unit* raster_ = nullptr;
   std::size_t tile_ = kNone;  // of the last quad
   Cycle since_ = 0;           // all before it is counted or was idle
+  Cycle before_ = 0;          // of draws that came before the first quad
   static constexpr std::size_t kNone = ~std::size_t{0};
 };
 

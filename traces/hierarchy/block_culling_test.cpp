@@ -98,6 +98,32 @@ TEST(BlockCulling, NeverChangesThePicture) {
     expect_same_pictures(generator, "EWA", [](Scene&) {});
 }
 
+// Walls that face the eye from exactly where the far plane is, or the near one.
+TEST(BlockCulling, NeverChangesThePictureOfAWallOnAClipPlane) {
+  Scene scene = small_model("sphere");
+  scene.splatting.algorithm = Algorithm::no_ewa;
+  scene.surfels.resize(9);
+  for (std::size_t i = 0; i < 9; ++i) {
+    scene.surfels[i].position = {0.1f * static_cast<float>(i % 3), 0.1f * static_cast<float>(i / 3), 0.1f};
+    scene.surfels[i].normal = {0, 0, -1};
+    scene.surfels[i].radius = 0.1f;
+  }
+  scene.camera = close_up();
+  scene.camera.fov_y_degrees = 30;
+  const CapturedWeights weights = uniform_weights(scene.surfels.size(), scene.splatting.gamma);
+  for (int tenths = 1; tenths <= 60; ++tenths) {
+    scene.camera.eye = {0, 0, -tenths / 10.0};
+    scene.camera.target = {0, 0, 0.1};
+    const double wall = (tenths + 1) / 10.0;
+    for (const bool at_far : {true, false}) {
+      scene.camera.near = at_far ? wall / 10 : wall;
+      scene.camera.far = at_far ? wall : 10 * wall;
+      ASSERT_EQ(drawn(scene, weights, Culling::off).frame, drawn(scene, weights, Culling::blocks).frame)
+          << wall << (at_far ? " at the far plane" : " at the near plane");
+    }
+  }
+}
+
 TEST(BlockCulling, NeverChangesThePictureWithoutPrefilter) {
   expect_same_pictures("torus-knot", "no EWA", [](Scene& s) { s.splatting.algorithm = Algorithm::no_ewa; });
 }

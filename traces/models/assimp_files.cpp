@@ -62,6 +62,7 @@ std::string ending_of(const std::filesystem::path& path) {
 }
 
 std::filesystem::path file_named(std::string name, const std::filesystem::path& folder) {
+  name.erase(name.find_last_not_of(" \t") + 1);
   std::ranges::replace(name, '\\', '/');
   std::filesystem::path as_it_stands = folder / name, decoded = folder / percent_decoded(name);
   std::error_code error;

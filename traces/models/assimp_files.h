@@ -11,8 +11,9 @@ namespace splatscope::traces {
 // Of a file's name, in small letters: ".obj".
 std::string ending_of(const std::filesystem::path& path);
 
-// The file in `folder` that a mesh calls `name`: with / in the place of \, as it stands or, where there is
-// none of that name, as the percent-encoded URI that glTF prescribes ("my%20skin.png").
+// The file in `folder` that a mesh calls `name`: without blanks behind it, with / in the place of \, as it
+// stands or, where there is none of that name, as the percent-encoded URI that glTF prescribes
+// ("my%20skin.png").
 std::filesystem::path file_named(std::string name, const std::filesystem::path& folder);
 
 // How assimp reads files here: by `file_named`; .obj, .mtl and .ply without the byte order mark that some

@@ -21,6 +21,7 @@
 #include "traces/models/gltf_check.h"
 #include "traces/models/obj_text.h"
 #include "traces/models/off_check.h"
+#include "traces/models/ply_text.h"
 #include "traces/models/texture_image.h"
 #include "traces/point_file.h"
 
@@ -240,13 +241,11 @@ MeshFile read_whole(const std::filesystem::path& path, Textures textures) {
   if (!regular || !std::ifstream(path)) throw UserError(file, 0, "cannot be read, expected a mesh");
   if (ending_of(path) == ".off") expect_whole_off(path);
   if (ending_of(path) == ".gltf" || ending_of(path) == ".glb") expect_plain_gltf(path);
-  if (ending_of(path) ==
-      ".ply") {  // whose reader in assimp hangs on some headers and fills up what is missing
-    if (!ply_has_faces(path)) throw UserError(file, 0, "holds no faces, expected a mesh");
-    expect_whole_ply(path);
-  }
+  if (ending_of(path) == ".ply" && !ply_has_faces(path))
+    throw UserError(file, 0, "holds no faces, expected a mesh");
   std::string text;
   if (ending_of(path) == ".obj") text = obj_text(path);
+  if (ending_of(path) == ".ply") text = ply_text(path);
   std::vector<std::filesystem::path> files;
   Assimp::Importer importer;
   importer.SetIOHandler(new AssimpFiles(files, path, std::move(text)));  // the importer's to delete

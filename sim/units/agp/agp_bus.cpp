@@ -15,7 +15,7 @@ bool AgpBus::serve(Cycle now, const Client& client) {
   const auto rate = static_cast<std::uint32_t>(spec_.bytes_per_clock);
   const Cycle length = (request.bytes + rate - 1) / rate;
   data_free_ = std::max(now + latency_, data_free_) + length;
-  on_the_way_.push_back(data_free_);
+  on_the_way_.push_back({data_free_ - length, data_free_});
   ++reads_;
   data_clocks_.book(now, data_free_ - length, data_free_);
   event(now, data_free_);
@@ -27,20 +27,28 @@ bool AgpBus::serve(Cycle now, const Client& client) {
   return true;
 }
 
+// Latencies overlap, so the bus that only waits for one could take more: it is starved. Busy is what limits:
+// data on the lines, and as many requests on the way as there may be.
+Step AgpBus::waiting(Cycle now) const {
+  Cycle next = kNever;
+  if (!is_full())
+    for (const Client& client : clients_) next = std::min(next, client.requests->next_visible());
+  if (on_the_way_.empty()) return idle(next);
+  const auto [start, end] = on_the_way_.front();
+  if (is_full() || start <= now) return busy(std::min(next, end));
+  return starved(std::min(next, start));
+}
+
 // One request a clock, the clients in turn.
 Step AgpBus::advance(Cycle now) {
-  while (!on_the_way_.empty() && on_the_way_.front() <= now) on_the_way_.pop_front();
-  if (on_the_way_.size() == static_cast<std::size_t>(spec_.queue)) return busy(on_the_way_.front());
-  for (std::size_t i = 0; i < clients_.size(); ++i) {
+  while (!on_the_way_.empty() && on_the_way_.front().end <= now) on_the_way_.pop_front();
+  for (std::size_t i = 0; i < clients_.size() && !is_full(); ++i) {
     const std::size_t client = (turn_ + i) % clients_.size();
     if (!serve(now, clients_[client])) continue;
     turn_ = (client + 1) % clients_.size();
-    return busy(now + 1);
+    break;
   }
-  Cycle next = kNever;
-  for (const Client& client : clients_) next = std::min(next, client.requests->next_visible());
-  if (on_the_way_.empty()) return idle(next);
-  return busy(std::min(next, on_the_way_.front()));
+  return waiting(now);
 }
 
 std::vector<Statistic> AgpBus::statistics(Cycle now) const {

@@ -25,13 +25,18 @@ class AgpBus final : public Unit {
     Channel<MemoryRequest>* requests;
   };
   bool serve(Cycle now, const Client& client);
+  bool is_full() const { return on_the_way_.size() == static_cast<std::size_t>(spec_.queue); }
+  Step waiting(Cycle now) const;
 
   Machine::Agp spec_;
   Cycle latency_;
   std::vector<Client> clients_;
   std::size_t turn_ = 0;
   Cycle data_free_ = 0;
-  std::deque<Cycle> on_the_way_;  // ends of the requests on the bus
+  struct Transfer {
+    Cycle start, end;  // of its data
+  };
+  std::deque<Transfer> on_the_way_;
   std::uint64_t reads_ = 0;
   DataClocks data_clocks_;
 };

@@ -56,6 +56,27 @@ TEST(AgpBus, OnlySoManyRequestsAreOnTheBus) {
   EXPECT_EQ(answers(2, {16, 20, 1}), (std::vector<Cycle>{26, 25 + 20 + 4 + 1}));
 }
 
+// Of one request in flight at a time the bus is never done; of sixteen it waits for requests but for their
+// data: three of four clocks, which come 20 after the first was taken in 1.
+TEST(AgpBus, ABusThatCouldTakeMoreIsNotBusy) {
+  const auto books = [](int queue) {
+    testing::Bench bench;
+    Client client(3);
+    AgpBus agp("agp", {16, 20, queue}, testing::kPeriod);
+    bench.add(client);
+    bench.add(agp);
+    Channel<MemoryRequest> requests("requests", client, agp, 16);
+    agp.connect(client.port, requests);
+    client.port.connect({&requests}, 64);
+    for (int i = 0; i < 4; ++i) bench.run();  // each request ends a run, so that the core can see its answer
+    return bench.books(agp, 200).cycles;
+  };
+  EXPECT_EQ(books(16)[Step::kBusy], 3u * 4);
+  EXPECT_EQ(books(16)[Step::kStarved], 20u);
+  EXPECT_EQ(books(1)[Step::kBusy], 3u * 24);
+  EXPECT_EQ(books(1)[Step::kStarved], 0u);
+}
+
 TEST(AgpBus, ClientsTakeTurns) {
   Client first(2), second(2);
   AgpBus agp("agp", {16, 20, 16}, testing::kPeriod);

@@ -115,7 +115,9 @@ void MemoryChannel::issue(Cycle now, std::size_t index) {
   last_was_write_ = entry.write;
   Bank& bank = banks_[entry.bank];
   bank.access_from = first - cas_ + length;
-  bank.precharge_from = std::max(bank.precharge_from, bus_free_ + (entry.write ? write_recovery_ : 0));
+  // What was read is on its way while the bank precharges; what is written has to arrive.
+  bank.precharge_from =
+      std::max(bank.precharge_from, entry.write ? bus_free_ + write_recovery_ : bank.access_from);
   data_clocks_.book(now, first, bus_free_);
   // The next is picked while there is still time to open its row before the data bus is free.
   const Cycle preparation = precharge_ + activate_ + cas_;

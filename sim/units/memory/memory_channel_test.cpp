@@ -109,23 +109,30 @@ TEST(MemoryChannel, AnotherBankOpensBesideTheFirst) {
 }
 
 TEST(MemoryChannel, AnotherRowOfTheBankWaitsForItsPrecharge) {
-  // Activated in 2; precharge no sooner than 2 + 10 and the end of data 13; then 3 + 5 + 4, and two clocks of
-  // data.
-  EXPECT_EQ(serve({{0, 16}, {512, 16}}, spec()).answers, (std::vector<Cycle>{13, 13 + 3 + 5 + 4 + 2}));
+  // Activated in 2; precharge no sooner than 2 + 10; then 3 + 5 + 4, and two clocks of data.
+  EXPECT_EQ(serve({{0, 16}, {512, 16}}, spec()).answers, (std::vector<Cycle>{13, 12 + 3 + 5 + 4 + 2}));
   Machine::Memory long_active = spec();
   long_active.row_active_clocks = 20;  // precharge in 22
   EXPECT_EQ(serve({{0, 16}, {512, 16}}, long_active).answers, (std::vector<Cycle>{13, 22 + 3 + 5 + 4 + 2}));
 }
 
+// A read bank precharges while its data are on their way, however long that takes.
+TEST(MemoryChannel, ALongAccessHoldsNoBank) {
+  Machine::Memory slow = spec();
+  slow.cas_clocks += 20;
+  EXPECT_EQ(serve({{0, 16}, {512, 16}}, slow).answers, (std::vector<Cycle>{13 + 20, 12 + 3 + 5 + 24 + 2}));
+}
+
 TEST(MemoryChannel, TheRequestWhoseDataComesFirstOvertakes) {
   // While the first still moves its 64 bytes (until 19) both others are there: the third hits the open row
-  // and goes before the second, which waits for the precharge behind it.
+  // and goes before the second, which waits for the precharge behind it: once the third is read out of the
+  // bank, in 17, four clocks (CAS) before its data are.
   const Served served = serve({{0, 64}, {512, 16}, {64, 16}}, spec());
-  EXPECT_EQ(served.answers, (std::vector<Cycle>{19, 21 + 3 + 5 + 4 + 2, 21}));
+  EXPECT_EQ(served.answers, (std::vector<Cycle>{19, 17 + 3 + 5 + 4 + 2, 21}));
   Machine::Memory in_order = spec();
   in_order.bypass_limit = 0;
   const Served strict = serve({{0, 64}, {512, 16}, {64, 16}}, in_order);
-  EXPECT_EQ(strict.answers[1], 19u + 3 + 5 + 4 + 2);
+  EXPECT_EQ(strict.answers[1], 15u + 3 + 5 + 4 + 2);
   EXPECT_GT(strict.answers[2], strict.answers[1]);
 }
 
@@ -176,9 +183,11 @@ TEST(MemoryPort, ConsecutiveAddressesGoRoundTheChannels) {
   EXPECT_EQ(b.statistics(kNever)[0].value, 3u);
 }
 
-// Both wait for the same precharge.
+// Both wait for the same precharge: in 15, four clocks before the end of data; then for that of a row that is
+// active from 18 for 10 clocks.
 TEST(MemoryChannel, OfEqualsTheOldestGoesFirst) {
-  EXPECT_EQ(serve({{0, 64}, {512, 16}, {1024, 16}}, spec()).answers, (std::vector<Cycle>{19, 33, 47}));
+  EXPECT_EQ(serve({{0, 64}, {512, 16}, {1024, 16}}, spec()).answers,
+            (std::vector<Cycle>{19, 15 + 3 + 5 + 4 + 2, 18 + 10 + 3 + 5 + 4 + 2}));
 }
 
 // Taken in turn and served in order, each two clocks behind the one before.
