@@ -59,5 +59,38 @@ TEST(HeatMaps, SumsAreTheCounters) {
   }
 }
 
+// Three pixels of the quad right of the one in the corner: all but the lower right one, of which the upper
+// left one passes.
+TEST(HeatMaps, APixelIsCountedWhereItLies) {
+  Trace trace;
+  trace.width = 4;
+  trace.height = 4;
+  HeatMaps heat(trace, false);
+  DrawWork work;
+  work.quads = {{.x = 1, .y = 0, .covered = 0b0111, .passed = 0b0001, .texel_block_count = 3}};
+  heat.add(work);
+  const std::vector<HeatMap> maps = heat.maps();
+  EXPECT_EQ(maps[0].image.pixels, (std::vector<float>{0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(maps[1].image.pixels, (std::vector<float>{0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(maps[2].image.pixels, (std::vector<float>{0, 3, 0, 0}));
+}
+
+// Half of the way from ln 1 to ln 100 is ln 10; each count fills as many pixels as it stands for.
+TEST(HeatMaps, ColoursGoByTheLogarithmOfOneMore) {
+  HeatMap map;
+  map.scale = 2;
+  map.image = {3, 1, {0, 9, 99}};
+  const Image image = colored(map);
+  ASSERT_EQ(image.width, 6);
+  ASSERT_EQ(image.height, 2);
+  constexpr float kExpected[][3] = {{0, 0, 0.02f}, {0.74f, 0.22f, 0.33f}, {0.99f, 1, 0.64f}};
+  for (int x = 0; x < 6; ++x) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(image.at(x, 0)[c], kExpected[x / 2][c], 1e-5) << x;
+      EXPECT_EQ(image.at(x, 1)[c], image.at(x, 0)[c]) << x;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace splatscope::studies

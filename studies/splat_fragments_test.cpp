@@ -94,5 +94,39 @@ TEST(SplatFragments, WithTooLargeAnOffsetTheFartherWallLeaks) {
   EXPECT_EQ(nearer, counts.leaking_pixels);
 }
 
+// The nearer wall's middle surfel lies on the ray of pixel (32, 32): J is eta h / z = 55.43 * 0.3536 / 4
+// = 4.900 times the unit matrix, and the filter 1 / (2 pi (1 + 1 / 4.900^2)) at its centre.
+TEST(SplatFragments, AWeightIsTheFilterAtThePixel) {
+  const traces::Scene scene = two_walls(0.25);
+  const auto [trace, rendered] = draw(scene);
+  double weight = 0;
+  for_each_fragment(scene, trace, rendered, visible_surface(scene), [&](const SplatFragment& fragment) {
+    if (fragment.surfel == 12 && fragment.pixel == 32 * 64 + 32) weight += fragment.weight;
+  });
+  EXPECT_NEAR(weight, 0.1528, 5e-5);
+}
+
+// Drawn with an offset of 10 all fragments are kept, with 0.25 those of the farther wall are hidden behind
+// the nearer one: each is wrong by the rule of the other.
+TEST(SplatFragments, PixelsAreMarkedByWhatIsWrongAtThem) {
+  const traces::Scene hiding = two_walls(0.25), keeping = two_walls(10);
+  const VisibleSurface surface = visible_surface(hiding);
+  const std::size_t middle = 32 * 64 + 32, beside = 32 * 64 + 6;
+  const auto [kept_trace, kept] = draw(keeping);
+  const FragmentCounts too_many = count_fragments(hiding, kept_trace, kept, surface);
+  EXPECT_EQ(too_many.wrongly_hidden, 0u);
+  EXPECT_EQ(too_many.wrongly_kept, too_many.leaking);
+  const Image blue = wrong_pixels(hiding, kept_trace, kept, surface);
+  EXPECT_EQ(blue.pixels[middle], (std::array<float, 4>{0, 0, 1, 1}));
+  const auto [hidden_trace, hidden] = draw(hiding);
+  const FragmentCounts too_few = count_fragments(keeping, hidden_trace, hidden, surface);
+  EXPECT_EQ(too_few.wrongly_hidden, too_few.fragments - too_few.kept);
+  EXPECT_EQ(too_few.wrongly_kept, 0u);
+  const Image red = wrong_pixels(keeping, hidden_trace, hidden, surface);
+  EXPECT_EQ(red.pixels[middle], (std::array<float, 4>{1, 0, 0, 1}));
+  // Right, and drawn in (1, 0, 0).
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(red.pixels[beside][c], 0.25 + 0.25 / 3, 0.01);
+}
+
 }  // namespace
 }  // namespace splatscope::studies
