@@ -51,5 +51,21 @@ TEST(Extremes, guards_repair_what_they_are_for) {
   }
 }
 
+// A splatter whose error is the value of the sweep itself, in per mille.
+TEST(Extremes, a_row_says_where_an_error_passes_each_bound) {
+  ExtremeSweep errors = sweep("cosine");
+  errors.values = {5, 50, 500, 5000};
+  std::size_t point = 0;
+  const Splatter telling{"telling", [&](const kernels::View&, std::span<const kernels::Surfel>) {
+                           return ExtremeErrors{.deviation = errors.values[point++] / 1000, .weight = 0.001};
+                         }};
+  errors.surfel = [](const kernels::View&, double, std::mt19937&) { return kernels::Surfel{}; };
+  const ExtremeRow row = sweep_row(errors, telling, 1, 1);
+  EXPECT_EQ(row.errors, (std::vector<double>{0.005, 0.05, 0.5, 5}));
+  EXPECT_EQ(row.over_1, 50);
+  EXPECT_EQ(row.over_10, 500);
+  EXPECT_EQ(row.over_all, 5000);
+}
+
 }  // namespace
 }  // namespace splatscope::studies

@@ -45,11 +45,11 @@ TEST(Precision, steps_cost_what_they_drop) {
 TEST(Precision, many_small_splats_vanish_in_eight_bits) {
   const double overlaps[] = {4, 16, 300};
   const auto rows = overlap_rows(overlaps, 96);
-  const auto bias = [&](std::string_view frame, double count) {
-    return std::ranges::find_if(rows,
-                                [&](const OverlapRow& r) { return r.frame == frame && r.overlaps == count; })
-        ->bias;
+  const auto row_of = [&](std::string_view frame, double count) {
+    return *std::ranges::find_if(
+        rows, [&](const OverlapRow& r) { return r.frame == frame && r.overlaps == count; });
   };
+  const auto bias = [&](std::string_view frame, double count) { return row_of(frame, count).bias; };
   EXPECT_LT(bias("unorm8, truncate", 300), -150);
   EXPECT_NEAR(bias("unorm8, truncate", 16), -0.5 * 16, 0.3) << "half a step a splat";
   EXPECT_GT(std::abs(bias("unorm8, nearest", 300)), 10);
@@ -57,6 +57,13 @@ TEST(Precision, many_small_splats_vanish_in_eight_bits) {
     EXPECT_LT(std::abs(bias("unorm16, nearest", count)), 0.5) << count;
     EXPECT_LT(std::abs(bias("float32", count)), 0.5) << count;
   }
+  // Of 300, the largest is 0.73 255 / 300 / (1 - 1/e) = 0.98 of a step in its middle, exp(-u) of that with u
+  // even from 0 to 1: truncated nothing is left. At place i of 16 the dither rounds up what is over
+  // 1 - (i + 0.5) / 16: from i = 9 on more than 255 of the 300, which is white, and hardly any at i = 0.
+  EXPECT_EQ(row_of("unorm8, truncate", 300).black, 1);
+  EXPECT_EQ(row_of("unorm8, dither", 300).saturated, 7.0 / 16);
+  EXPECT_LT(row_of("unorm8, dither", 300).black, 1.0 / 16);
+  EXPECT_EQ(row_of("float32", 4).black, 0);
   for (const OverlapRow& row : rows) {
     if (row.frame.starts_with("unorm8")) continue;
     EXPECT_EQ(row.saturated, 0) << row.frame;
@@ -70,6 +77,8 @@ TEST(Precision, a_depth_offset_is_for_curved_surfaces) {
   const DepthRow* const z16 = &rows[0];
   const DepthRow* const z24 = &rows[3];
   EXPECT_GT(z24[0].lost, z16[0].lost + 0.05);
+  EXPECT_GT(z24[0].holes, 0);
+  EXPECT_LT(0.5 * z24[0].holes, z24[0].lost) << "each has lost half";
   EXPECT_LT(z24[1].lost, 0.01);
   EXPECT_EQ(z24[1].leaks, 0);
   EXPECT_GT(z24[2].leaks, 0.9) << "further than the surface behind";
@@ -84,6 +93,35 @@ TEST(Precision, the_documentation_holds) {
   for (const SwitchRow& row : switch_rows(switches, scenes)) {
     EXPECT_NE(page.find(line_of(row)), std::string::npos) << line_of(row);
   }
+}
+
+// 200 pixels that should be 0.5, and one beyond the surface. Right but for three: one a tenth off in red, one
+// at 1 where 0.6 is wanted, a black one; and for white that is white as it should be.
+TEST(Precision, errors_are_counted_over_the_surface) {
+  NumberFormats formats;
+  formats.frame = FrameFormat::float32;
+  Frame frame(201, 1, formats);
+  kernels::SplatSums reference;
+  reference.width = 201;
+  reference.height = 1;
+  reference.sums.resize(201, glm::dvec4(1));
+  reference.normalized.resize(201, glm::dvec3(0.5));
+  for (Vec4& color : frame.colors32) color = {0.5f, 0.5f, 0.5f, 1};
+  frame.colors32[3][0] = 0.6f;
+  frame.colors32[50] = {1, 1, 1, 1};
+  reference.normalized[50] = glm::dvec3(0.6);
+  frame.colors32[99] = {0, 0, 0, 1};
+  frame.colors32[120] = {1, 1, 1, 1};
+  reference.normalized[120] = glm::dvec3(1);
+  frame.colors32[200] = {0, 0, 0, 0};
+  reference.sums[200] = glm::dvec4(0.4);  // less than half of the median
+  const Errors errors = errors_of(frame, reference);
+  EXPECT_NEAR(errors.psnr, -10 * std::log10((0.01 + 3 * 0.16 + 3 * 0.25) / 600), 1e-5);
+  EXPECT_NEAR(errors.mean, 255 * (0.1 + 0.4 + 0.5) / 200, 1e-5);
+  EXPECT_NEAR(errors.percentile99, 255 * 0.4, 1e-5) << "198 of 200 are less";
+  EXPECT_NEAR(errors.bias, 255 * (0.1 + 3 * 0.4 - 3 * 0.5) / 600, 1e-5);
+  EXPECT_EQ(errors.saturated, 1.0 / 200);
+  EXPECT_EQ(errors.black, 1.0 / 200);
 }
 
 }  // namespace

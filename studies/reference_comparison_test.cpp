@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "model/error.h"
+#include "traces/volumes/volume_scene.h"
 
 namespace splatscope::studies {
 namespace {
@@ -52,12 +53,14 @@ TEST(ReferenceComparison, counts_holes_and_differences_on_the_surface_alone) {
   frame.colors32[6 * 2 + 2] = {0, 0, 0, 0.5f};  // black, but something was drawn
   frame.colors32[6 * 5 + 5] = {0, 0, 0, 0};     // on the silhouette
   frame.colors32[6 * 3 + 0] = {1, 1, 1, 1};     // beyond the surface
+  frame.colors32[6 * 4 + 3][1] += 7.0f / 255;
+  frame.colors32[6 * 4 + 4][1] += 9.0f / 255;
   const Comparison c = compare(frame, grey_square());
   EXPECT_EQ(c.holes, 1u);
   EXPECT_EQ(c.rounded_to_black, 1u);
-  EXPECT_EQ(c.over_8, 3u);
+  EXPECT_EQ(c.over_8, 4u);
   EXPECT_NEAR(c.worst, 127.5, 1e-9);
-  EXPECT_NEAR(c.psnr, -10 * std::log10(3 * 0.25 / 25), 1e-9);
+  EXPECT_NEAR(c.psnr, -10 * std::log10((9 * 0.25 + (49 + 81) / (255.0 * 255)) / (3 * 25)), 1e-6);
 }
 
 TEST(ReferenceComparison, tells_what_rounded_to_black_from_holes) {
@@ -119,6 +122,20 @@ TEST(ReferenceComparison, difference_picture_is_grey_where_they_agree) {
   EXPECT_NEAR(image.pixels[7][0], 0.66f, 1e-5);
   EXPECT_EQ(image.pixels[7][1], 0.5f);
   EXPECT_EQ(image.pixels[7][2], 0.0f);
+}
+
+// What the volume lets through is its background: all of it beside the volume, little in its middle.
+TEST(ReferenceComparison, a_volume_lies_over_its_background) {
+  const auto picture = [](const char* background) {
+    const std::string text =
+        std::string("[volume]\ngenerator = \"head\"\nvoxels = [16, 16, 16]\nbackground = ") + background +
+        "\n[frame]\nwidth = 16\nheight = 16\n";
+    return volume_reference(traces::parse_volume_scene(text, "head.toml")).normalized;
+  };
+  const auto black = picture("[0, 0, 0]"), blue = picture("[0, 0, 0.5]");
+  EXPECT_EQ(blue[0] - black[0], glm::dvec3(0, 0, 0.5));
+  EXPECT_EQ(blue[8 * 16 + 8].r, black[8 * 16 + 8].r);
+  EXPECT_LT(blue[8 * 16 + 8].b - black[8 * 16 + 8].b, 0.25);
 }
 
 }  // namespace
