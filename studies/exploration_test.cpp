@@ -53,7 +53,8 @@ TEST(Exploration, a_program_of_30_slots_nearly_doubles_the_frame_rate) {
 TEST(Exploration, wishes_do_what_they_are_for) {
   const std::vector<Hardware> wishes{hardware("as it was"),          hardware("4 vertex units"),
                                      hardware("half frame"),         hardware("divider"),
-                                     hardware("4 corners a vertex"), hardware("point sprites")};
+                                     hardware("4 corners a vertex"), hardware("point sprites"),
+                                     hardware("short programs")};
   const auto rows = what_if_rows(small_scene(), kBothMachines[0], wishes);
   constexpr std::size_t kPixel = 1, kSurfel = 2;
   const auto& base = rows[0].cells;
@@ -72,6 +73,7 @@ TEST(Exploration, wishes_do_what_they_are_for) {
       rows[5].cells[kSurfel].psnr,
       what_if_picture(small_scene(), kBothMachines[0], wishes[5], traces::Algorithm::ewa_per_surfel).psnr)
       << "sprites have weights of their own";
+  EXPECT_GT(fps(6, kSurfel), 1.5 * base[kSurfel].rate.fps) << "short programs";
 }
 
 // Lines of docs/exploration.md, made again.

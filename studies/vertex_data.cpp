@@ -36,27 +36,6 @@ traces::Scene scene_of(const Plane& plane) {
   return traces::parse_scene(text, std::string(plane.name));
 }
 
-nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows) {
-  auto list = nlohmann::ordered_json::array();
-  const auto rate = [](const Rate& r) {
-    return nlohmann::ordered_json{{"frames_per_second", r.fps}, {"bottleneck", r.bottleneck}};
-  };
-  for (const VertexDataRow& row : rows) {
-    list.push_back({{"visibility_program", row.programs.visibility},
-                    {"ewa_program", row.programs.ewa},
-                    {"machine", row.machine},
-                    {"vs1", row.visibility_slots},
-                    {"vs2", row.ewa_slots},
-                    {"vertex_bytes_1", row.visibility_bytes},
-                    {"vertex_bytes_2", row.ewa_bytes},
-                    {"surfel_bytes", row.surfel_bytes()},
-                    {"video", rate(row.video)},
-                    {"agp", rate(row.agp)},
-                    {"psnr_decibels", row.psnr}});  // null: equal pictures
-  }
-  return list;
-}
-
 void add_table(Findings& findings, const Plane& plane, const std::vector<VertexDataRow>& rows) {
   using enum Report::Align;
   std::vector<std::vector<std::string>> cells;
@@ -121,6 +100,27 @@ Plot rate_plot(const std::vector<VertexDataRow>& rows) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows) {
+  auto list = nlohmann::ordered_json::array();
+  const auto rate = [](const Rate& r) {
+    return nlohmann::ordered_json{{"frames_per_second", r.fps}, {"bottleneck", r.bottleneck}};
+  };
+  for (const VertexDataRow& row : rows) {
+    list.push_back({{"visibility_program", row.programs.visibility},
+                    {"ewa_program", row.programs.ewa},
+                    {"machine", row.machine},
+                    {"vs1", row.visibility_slots},
+                    {"vs2", row.ewa_slots},
+                    {"vertex_bytes_1", row.visibility_bytes},
+                    {"vertex_bytes_2", row.ewa_bytes},
+                    {"surfel_bytes", row.surfel_bytes()},
+                    {"video", rate(row.video)},
+                    {"agp", rate(row.agp)},
+                    {"psnr_decibels", row.psnr}});  // null: equal pictures
+  }
+  return list;
+}
 
 std::vector<VertexDataRow> vertex_data_rows(const traces::Scene& scene, const Progress& progress) {
   std::vector<VertexDataRow> rows;
