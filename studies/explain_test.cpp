@@ -51,6 +51,13 @@ TEST(Explain, SaysWhereNoTriangleCoversThePixel) {
   EXPECT_EQ(text_of(32, 24).find("no triangle"), std::string::npos);
 }
 
+TEST(Explain, SaysWhatTheHostDoes) {
+  const Trace trace = small_trace("ewa-per-pixel");
+  const std::string text = describe(trace, NumberFormats{}, explain_pixel(trace, {}, 32, 24));
+  EXPECT_NE(text.find("normalise on the host"), std::string::npos) << text;
+  EXPECT_EQ(text.find("present"), std::string::npos) << text;
+}
+
 // Per surfel: out = source * source alpha + before, in double exactly, in 8 bits rounded once.
 TEST(Explain, EachStepAddsItsSource) {
   const Trace trace = small_trace("ewa-per-surfel");

@@ -7,6 +7,7 @@
 
 #include "model/error.h"
 #include "model/testing/scratch_folder.h"
+#include "pictures/codec.h"
 #include "studies/testing/read_image.h"
 
 namespace splatscope::studies {
@@ -63,6 +64,40 @@ TEST_F(ImageFile, FilesAppearWholeOrNotAtAll) {
   EXPECT_THROW(write_exr(ramp(), folder_ / "none" / "a.exr"), UserError);
   EXPECT_THROW(write_png(ramp(), folder_ / "none" / "a.png"), UserError);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+// Of PNG a gamma, as shown on a screen; of EXR the name of its channel, behind the size of the list of these.
+TEST_F(ImageFile, SaysWhatItsNumbersAre) {
+  write_png(ramp(), folder_ / "a.png");
+  EXPECT_NE(text_of(folder_ / "a.png").find("sRGB"), std::string::npos);
+  for (const char* channel : {"Z", "Y"}) {
+    write_exr(GrayImage{2, 1, {0.25f, 1}}, folder_ / "a.exr", channel);
+    const std::string bytes = text_of(folder_ / "a.exr"), list = "chlist";
+    EXPECT_EQ(bytes.substr(bytes.find(list) + list.size() + 1 + 4, 1), channel);
+  }
+}
+
+TEST_F(ImageFile, NothingLargerThanAskedForIsRead) {
+  write_png(ramp(), folder_ / "a.png");
+  const pictures::Source wide{(folder_ / "a.png").string()};
+  std::string why;
+  EXPECT_TRUE(pictures::codec().read_bytes(wide, 3, 5, &why)) << why;
+  EXPECT_FALSE(pictures::codec().read_bytes(wide, 3, 4, &why));
+  EXPECT_EQ(why, "of a size or depth that is not read");
+  write_png(Image(2, 5), folder_ / "b.png");
+  const pictures::Source high{(folder_ / "b.png").string()};
+  EXPECT_TRUE(pictures::codec().read_bytes(high, 3, 5, &why)) << why;
+  EXPECT_FALSE(pictures::codec().read_bytes(high, 3, 4, &why));
+}
+
+TEST_F(ImageFile, ThereIsNoneWhereItsMakingWasStopped) {
+  const Image image = ramp();
+  const pictures::Picture one{
+      .width = 5, .height = 3, .channels = 3, .values = image.pixels[0].data(), .pixel_stride = 4};
+  for (const char* ending : {".png", ".exr"}) {
+    EXPECT_TRUE(pictures::codec().encode(ending, one, [] { return true; }).empty()) << ending;
+    EXPECT_FALSE(pictures::codec().encode(ending, one, [] { return false; }).empty()) << ending;
+  }
 }
 
 TEST_F(ImageFile, HoldsNoDate) {

@@ -63,7 +63,10 @@ TEST(Roofline, CountsWhatTheRunAskedFor) {
   // A roof for each of the three that were used, and a point under each slope.
   const auto plot = roofline_plot(list, 1e-5);
   ASSERT_TRUE(plot);
-  EXPECT_EQ(5u, plot->series.size());
+  ASSERT_EQ(5u, plot->series.size());
+  // The run under fill: 4 instructions a quad, 1000 in 10 us.
+  EXPECT_EQ(plot->series[2].x, (std::vector<double>{4}));
+  EXPECT_DOUBLE_EQ(plot->series[2].y.at(0), 1e8);
   for (const Plot::Series& series : plot->series) {
     for (const double y : series.y) EXPECT_LE(y, list[0].peak) << series.name;
   }

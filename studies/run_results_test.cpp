@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "studies/report/run_report.h"
+
 namespace splatscope::studies {
 namespace {
 
@@ -82,6 +84,43 @@ TEST(RunResults, EveryFigureStandsUnderItsName) {
     "psnr_off_edges_decibels": 47.0, "inside_pixels": 48, "holes": 49, "rounded_to_black": 50})"));
   EXPECT_EQ(results["host"]["seconds"], 51.0);
   EXPECT_EQ(results["seed"], 52);
+}
+
+// Two frames at 1 MHz.
+sim::Result timed() {
+  sim::Result timing;
+  timing.cycles = 1'235'566;
+  timing.seconds = 1.235566;
+  timing.cycles_plus_minus = 60'000;
+  timing.frame_cycles = {1'234'567, 999};
+  timing.frame_plus_minus = {54'321, 0};
+  timing.units.push_back({.name = "raster", .busy = 1'235'566, .blocked_by = {}});
+  return timing;
+}
+
+TEST(RunResults, AFrameHasItsOwnTime) {
+  const nlohmann::json frames = timing_json(timed())["frames"];
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[0]["cycles"], 1'234'567);
+  EXPECT_NEAR(frames[0]["milliseconds"].get<double>(), 1234.567, 1e-9);
+  EXPECT_NEAR(frames[0]["frames_per_second"].get<double>(), 1 / 1.234567, 1e-9);
+  EXPECT_EQ(frames[0]["cycles_plus_minus"], 54'321);
+  EXPECT_EQ(frames[1]["cycles_plus_minus"], 0);
+}
+
+TEST(RunResults, ThePageHasItsTimesAndCounts) {
+  FrameRun run = numbered_run();
+  run.timing = timed();
+  run.reference = {};
+  run.rendered.counters.fragments = 40'000;
+  const Machine machine = machine::load(machine::kGeForce4);
+  const auto results = results_of(numbered_input(), machine, Fidelity::sampled, run);
+  EXPECT_EQ(
+      nlohmann::json(results["totals"][0]),
+      nlohmann::json::parse(R"({"name": "vertices", "value": 31, "unit": "vertices", "what": "shaded"})"));
+  const std::string page = run_report(numbered_input(), machine, run, results).html();
+  for (const char* cell : {">1 234 567 ± 54 321<", ">1234.567<", ">0.81<", ">999<", ">0.999<", ">40 000<"})
+    EXPECT_NE(page.find(cell), std::string::npos) << cell;
 }
 
 }  // namespace

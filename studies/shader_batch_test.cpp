@@ -25,6 +25,18 @@ TEST(ShaderBatch, GivesEveryOutputThatTheProgramWrites) {
             R"("oT0":["3f800000","40000000","00000000","00000000"]}})");
 }
 
+TEST(ShaderBatch, EveryOutputIsGivenUnderItsName) {
+  const json result = json::parse(
+      run(R"({"id": 1, "program": "vs_1_1\nmov oPos, c0.x\nmov oD0, c0.y\nmov oD1, c0.z\nmov oT0, c0.w\n)"
+          R"(mov oT1, c1.x\nmov oFog, c1.y\nmov oPts, c1.z\n", "constants": {"c0": ["1", "2", "3", "4"],)"
+          R"( "c1": ["5", "6", "7", "8"]}})"));
+  const std::pair<const char*, const char*> kOutputs[] = {
+      {"oPos", "1"}, {"oD0", "2"}, {"oD1", "3"}, {"oT0", "4"}, {"oT1", "5"}, {"oFog", "6"}, {"oPts", "7"}};
+  EXPECT_EQ(result["outputs"].size(), std::size(kOutputs)) << result;
+  for (const auto& [name, value] : kOutputs)
+    EXPECT_EQ(result["outputs"][name][0], std::string("0000000") + value) << name;
+}
+
 TEST(ShaderBatch, WhatIsNotGivenIsZeroAndInputsEndInOne) {
   EXPECT_EQ(run(R"({"id": 1, "program": "vs_1_1\nadd oPos, v3, c95\n"})"),
             R"({"id":1,"outputs":{"oPos":["00000000","00000000","00000000","3f800000"]}})");

@@ -94,6 +94,17 @@ TEST(ShaderDebugger, ShowsWhatKillsAndWhatIsSampledFrom) {
   EXPECT_NE(cancelled.find("cancels the fragment"), std::string::npos) << cancelled;
 }
 
+TEST(ShaderDebugger, SaysWhetherAFragmentIsKilled) {
+  const auto killed_by = [](const std::string& t0) {
+    return transcript("ps_1_1\ntexkill t0\nmov r0, v0\n", "step\n", R"({"texcoords": {"t0": [)" + t0 + "]}}");
+  };
+  for (const char* t0 :
+       {R"("bf800000", "0", "0", "0")", R"("0", "bf800000", "0", "0")", R"("0", "0", "bf800000", "0")"})
+    EXPECT_NE(killed_by(t0).find("cancels the fragment"), std::string::npos) << killed_by(t0);
+  EXPECT_NE(killed_by(R"("0", "0", "0", "bf800000")").find("keeps the fragment"), std::string::npos)
+      << "w is not read";
+}
+
 TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
   const auto error_of = [](const std::string& commands) {
     return splatscope::error_of([&] { transcript(kProgram, commands); });

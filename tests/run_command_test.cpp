@@ -37,6 +37,8 @@ TEST(CommandLine, RunWritesItsResults) {
   EXPECT_EQ(outcome.error, "") << "no progress bar on a pipe";
   for (const char* name : {"frame.png", "frame.exr", "depth.exr", "results.json"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "a/b" / name)) << name;
+  for (const auto& pixel : studies::testing::read_image(folder.path() / "a/b/frame.exr").pixels)
+    ASSERT_EQ(pixel[3], 1) << "what the frame buffer holds there is no coverage";
   const auto results = results_in(folder.path() / "a/b");
   EXPECT_EQ(results["machine"], "geforce4-ti4400");
   EXPECT_EQ(results["fidelity"], "cycle");
@@ -162,6 +164,9 @@ TEST(CommandLine, AWindowAfterTheRunIsSaidToShowNothing) {
               std::string::npos)
         << none;
   EXPECT_EQ(said("10:9999999999").find("warning"), std::string::npos);
+  const auto from = [&](std::uint64_t first) { return said(fmt::format("{}:9999999999", first)); };
+  EXPECT_NE(from(cycles).find("warning"), std::string::npos) << "the last is one before";
+  EXPECT_EQ(from(cycles.get<std::uint64_t>() - 1).find("warning"), std::string::npos);
 }
 
 // The folder for the results is made first, and goes again where the run fails.

@@ -4,13 +4,15 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 #include <span>
 
 #include "command_line.h"
 #include "model/testing/draws.h"
 #include "traces/trace_file.h"
 
-// That results.json counts what was drawn: a trace of which every count can be found by hand.
+// That results.json counts what was drawn, by a trace of which every count can be found by hand, and that
+// `run` prints the same.
 namespace splatscope::tests {
 namespace {
 
@@ -124,6 +126,45 @@ TEST(RunResults, CountWhatCanBeCountedByHand) {
   expect("memory.writes", 1024 / 64 + 4 + 4);
   expect("host.commands", 3);
   expect("host.pixels_normalized", 16 * 16);
+}
+
+// Of a sphere that reaches before the near plane and out of the frame, with weights from one side and in a
+// part of it: no two of these numbers are the same.
+TEST(RunResults, ArePrinted) {
+  const ScratchFolder folder;
+  folder.file("near.toml",
+              "surfels = { generator = \"sphere\", count = 1500 }\nframe = { width = 96, height = 96 }\n"
+              "camera = { eye = [0, 0, 2], target = [0.4, 0, 0], near = 1.2, fov_y_degrees = 40 }\n"
+              "hierarchy.culling = \"none\"\n"
+              "capture = { views = 1, frame_size = 64, box_min = [-0.5, -9, -9] }\n");
+  const Outcome outcome = run_program({"run", "near.toml", "--out", "o", "--reference"}, folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const auto results = results_in(folder.path() / "o");
+  const auto &surfels = results["surfels"], &counters = results["counters"],
+             &reference = results["reference"];
+  const auto count = [](const nlohmann::json& of, const char* name) { return of[name].get<std::size_t>(); };
+  for (const std::string& line :
+       {fmt::format(
+            "weights: {} captured, {} of them a vertex; {} seen from no view, {} outside of the box\n",
+            count(surfels, "weights_captured"), count(surfels, "weights_at_edges"),
+            count(surfels, "weights_by_default"), count(surfels, "weights_outside_box")),
+        fmt::format(
+            "dropped: {} outside the frustum, {} before the near plane, {} back-facing, 0 not finite\n",
+            count(counters, "triangles_outside_frustum"), count(counters, "triangles_behind_near"),
+            count(counters, "triangles_back_facing")),
+        fmt::format(" cycles, {:.2f} ms, ", results["frames"][0]["milliseconds"].get<double>()),
+        fmt::format(", {:.1f} dB over the {} of them off edges",
+                    reference["psnr_off_edges_decibels"].get<double>(),
+                    count(reference, "pixels_off_edges"))})
+    EXPECT_NE(outcome.out.find(line), std::string::npos) << line << outcome.out;
+  const std::set<std::size_t> distinct{count(surfels, "weights_captured"),
+                                       count(surfels, "weights_by_default"),
+                                       count(surfels, "weights_outside_box"),
+                                       count(counters, "triangles_outside_frustum"),
+                                       count(counters, "triangles_behind_near"),
+                                       count(counters, "triangles_back_facing"),
+                                       0};
+  EXPECT_EQ(distinct.size(), 7u) << outcome.out;
 }
 
 }  // namespace
