@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -84,7 +85,7 @@ TEST(Recorder, RefinesAFramePerSurfelByOnePerPixel) {
   Scene scene = parse_scene(
       "[surfels]\ncolumns = 24\nrows = 20\nchecker_light = [0.6, 0.6, 0.6]\n"
       "checker_dark = [0.3, 0.3, 0.3]\n[frame]\nwidth = 64\nheight = 64\n"
-      "[camera]\neye = [0, 14, -20]\ntarget = [0, 0, 0]\n",
+      "[camera]\neye = [0, 14, -20]\ntarget = [0, 0, 0]\n[splatting]\ngamma = 0.6\n",
       "greys.toml");
   for (const kernels::SplatProgram& program : kernels::ewa_programs()) {
     scene.splatting.ewa_program = program.name;
@@ -122,10 +123,13 @@ TEST(Recorder, RefinesTheLastOfProgressiveFrames) {
   scene.hierarchy.culling = Culling::blocks;
   scene.hierarchy.block_surfels = 16;
   scene.hierarchy.progressive = true;
-  const std::vector<splatscope::Frame> progressive = frames_of(record(scene, NumberFormats{}).trace);
+  const Trace coarse_to_fine = record(scene, NumberFormats{}).trace;
+  const std::vector<splatscope::Frame> progressive = frames_of(coarse_to_fine);
   ASSERT_GT(progressive.size(), 1u);
   scene.splatting.refine = true;
-  std::vector<splatscope::Frame> refined = frames_of(record(scene, NumberFormats{}).trace);
+  const Trace with_still_frame = record(scene, NumberFormats{}).trace;
+  EXPECT_EQ(with_still_frame.buffers.size(), coarse_to_fine.buffers.size() + 1);
+  std::vector<splatscope::Frame> refined = frames_of(with_still_frame);
   scene.hierarchy.progressive = false;
   scene.splatting.refine = false;
   scene.splatting.algorithm = Algorithm::ewa_per_pixel;
@@ -334,6 +338,46 @@ TEST(Recorder, HostileSurfelsLeaveNoNaN) {
     EXPECT_GT(rendered.counters.triangles_not_finite, 0u);
     EXPECT_GT(rendered.counters.triangles_behind, 0u);
   }
+}
+
+// Each level has weights to capture.
+TEST(Recorder, ProgressRunsOnceOverAllLevels) {
+  Scene scene = small_plane(Algorithm::ewa_per_surfel);
+  scene.capture.views = 4;
+  scene.capture.frame_size = 32;
+  scene.hierarchy = {.culling = Culling::off, .block_surfels = 16, .progressive = true};
+  std::vector<double> told;
+  record(scene, NumberFormats{}, [&](double fraction) { told.push_back(fraction); });
+  ASSERT_FALSE(told.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_LT(told.front(), 0.5);
+  EXPECT_DOUBLE_EQ(told.back(), 1);
+}
+
+// Coarse surfels overlap more than fine ones: each level has a gamma by which no more than a hundredth of its
+// sums passes 1. What the host does not divide shows them.
+TEST(Recorder, NoLevelSaturates) {
+  const Scene scene = parse_scene(
+      "surfels = { generator = \"sphere\", count = 3000 }\nframe = { width = 128, height = 128 }\n"
+      "splatting.algorithm = \"ewa-per-pixel\"\nhierarchy = { progressive = true, block_surfels = 16 }\n",
+      "sphere.toml");
+  RenderOptions options;
+  options.formats.frame = FrameFormat::float32;
+  options.formats.color = ColorFormat::float32;
+  Trace trace = record(scene, options.formats).trace;
+  std::erase_if(trace.commands, [](const Command& c) { return std::holds_alternative<NormalizeOnHost>(c); });
+  std::size_t frames = 0;
+  render(trace, options, {}, [&](const splatscope::Frame& frame) {
+    std::size_t drawn = 0, saturated = 0;
+    for (std::size_t pixel = 0; pixel < frame.depth.size(); ++pixel) {
+      drawn += frame.color(pixel)[3] > 0;
+      saturated += frame.color(pixel)[3] > 1;
+    }
+    EXPECT_GT(drawn, 5000u);
+    EXPECT_LE(saturated, drawn / 100) << "frame " << frames;
+    ++frames;
+  });
+  EXPECT_EQ(frames, 4u);
 }
 
 }  // namespace

@@ -83,6 +83,36 @@ TEST(BlockChoice, EachSurfelIsShownOnceAtSomeLevel) {
   for (const int times : shown(choice.tree, choice.frames.front())) ASSERT_EQ(1, times);
 }
 
+// Culled or shown, each surfel of the finest level is in one of the counts.
+TEST(BlockChoice, CountsWhatCoarseBlocksStandFor) {
+  Scene scene = small_model("culling = \"blocks\"\nlevel = \"auto\"\nsurfels_per_pixel = 0.02\n");
+  scene.camera.eye = scene.camera.target + 0.4 * (scene.camera.eye - scene.camera.target);
+  scene.camera.target += glm::dvec3(0.8, 0, 0);  // part of it is out of the frame
+  scene.camera.near *= 0.01;
+  const Choice choice = choose(scene);
+  const ChosenFrame& frame = choice.frames.front();
+  EXPECT_LT(frame.counts.surfels_by_level.front(), frame.counts.surfels);
+  EXPECT_GT(frame.counts.outside_frustum, 0u);
+  EXPECT_GT(frame.counts.facing_away, 0u);
+  const auto shown_once = static_cast<std::size_t>(std::ranges::count(shown(choice.tree, frame), 1));
+  EXPECT_EQ(shown_once + frame.counts.outside_frustum + frame.counts.facing_away, scene.surfels.size());
+}
+
+TEST(BlockChoice, BlocksThatFollowEachOtherAreOneRange) {
+  const Choice all = choose(small_model("culling = \"off\"\n"));
+  ASSERT_EQ(all.frames.front().ranges.size(), 1u);
+  EXPECT_EQ(all.frames.front().ranges[0].count, 6000u);
+  EXPECT_GT(all.frames.front().counts.blocks, 1u);
+}
+
+// Twice as far apart as those of the level below.
+TEST(BlockChoice, TheDepthOffsetGrowsWithTheSpacing) {
+  Splatting splatting;
+  splatting.depth_offset = 0.5;
+  for (const auto& [level, offset] : {std::pair(0u, 0.5), {1u, 1.0}, {3u, 4.0}})
+    EXPECT_DOUBLE_EQ(level_splatting(splatting, level).depth_offset, offset);
+}
+
 TEST(BlockChoice, WhatIsFarIsDrawnCoarsely) {
   Scene scene = small_model("culling = \"off\"\nlevel = \"auto\"\n");
   const glm::dvec3 ray = scene.camera.eye - scene.camera.target;

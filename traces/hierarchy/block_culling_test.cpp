@@ -149,25 +149,32 @@ TEST(BlockCulling, NeverChangesThePictureOfOtherSettings) {
   }
 }
 
-// A block of surfels a unit in radius.
-Block block_of(std::initializer_list<glm::vec3> positions, const glm::vec3& normal) {
+Block block_of(std::initializer_list<glm::vec3> positions, const glm::vec3& normal, float radius = 1) {
   std::vector<Surfel> surfels;
-  for (const glm::vec3& position : positions) surfels.push_back({position, normal, 1, {}});
+  for (const glm::vec3& position : positions) surfels.push_back({position, normal, radius, {}});
   return build_ldc_tree(surfels, 65536).levels.front().blocks.front();
 }
 
 // 90 degrees of view, 500 pixels each way: an eta of 250.
-BlockFate fate_of(std::initializer_list<glm::vec3> positions, const glm::vec3& normal,
-                  Faces faces = Faces::front) {
+BlockFate fate_of(const Block& block, const Splatting& splatting, const glm::dvec3& target = {0, 0, 1}) {
+  const kernels::View view = kernels::look_at({0, 0, 0}, target, {0, 1, 0}, 90, 500, 500, 1, 1000);
+  return BlockCulling(view, splatting).fate(block);
+}
+
+Splatting splatting_of(Faces faces = Faces::front, double depth_offset = 1) {
   Splatting splatting;
   splatting.cutoff = 1;
   splatting.sigma = 1;
-  splatting.depth_offset = 1;
+  splatting.depth_offset = depth_offset;
   splatting.faces = faces;
-  const kernels::View view = kernels::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 500, 500, 1, 1000);
+  return splatting;
+}
+
+BlockFate fate_of(std::initializer_list<glm::vec3> positions, const glm::vec3& normal,
+                  Faces faces = Faces::front) {
   const Block block = block_of(positions, normal);
   EXPECT_EQ(positions.size(), block.count);
-  return BlockCulling(view, splatting).fate(block);
+  return fate_of(block, splatting_of(faces));
 }
 BlockFate fate_of(const glm::vec3& position, const glm::vec3& normal, Faces faces = Faces::front) {
   return fate_of({position}, normal, faces);
@@ -182,6 +189,58 @@ TEST(BlockCulling, KnowsWhatFacesAway) {
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {1, 0, 0})) << "edge-on";
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 20}, {0.995f, 0, 0.0998f})) << "may turn on the pixel grid";
   EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 1.5f}, {0.6f, 0, 0.8f})) << "cut by the near plane";
+  EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 999.5f}, {0.3f, 0, 0.954f})) << "cut by the far plane";
+}
+
+// 900 units away a quad is 0.54 pixels wide: 0.01 + (4 / 32 + 6 / 32^2 / 0.54) / 0.54 = 0.26 is the least
+// cosine at which rounding its corners to the grid cannot turn it.
+TEST(BlockCulling, SmallQuadsMayTurnOnTheGrid) {
+  EXPECT_EQ(BlockFate::drawn, fate_of({0, 0, 900}, {std::sqrt(1 - 0.04f), 0, 0.2f}));
+  EXPECT_EQ(BlockFate::facing_away, fate_of({0, 0, 900}, {std::sqrt(1 - 0.09f), 0, 0.3f}));
+}
+
+// A splat's corners reach 1.5 * 2 radii, at a distance of 1.25 that is 600 pixels a unit of radius: beyond
+// the 32768 less the frame's sides that triangles are not clipped in.
+TEST(BlockCulling, WhatTheGuardBandCutsIsDrawn) {
+  const auto fate = [](float radius) {
+    return fate_of(block_of({{0, 0, 1.25f}}, {0, 0, 1}, radius), splatting_of());
+  };
+  EXPECT_EQ(BlockFate::facing_away, fate(50));
+  EXPECT_EQ(BlockFate::drawn, fate(56));
+}
+
+// Behind the eye, but the visibility pass moves its quads by 3 before it.
+TEST(BlockCulling, TheDepthOffsetBringsQuadsBeforeTheEye) {
+  const Block block = block_of({{0, 0, -1.5f}}, {0, 0, -1});
+  EXPECT_EQ(BlockFate::outside_frustum, fate_of(block, splatting_of(Faces::front, 1)));
+  EXPECT_EQ(BlockFate::drawn, fate_of(block, splatting_of(Faces::front, 3)));
+}
+
+// Along the camera's axis it moves the eye of that pass 5 units back, which then sees what the other does
+// not.
+TEST(BlockCulling, BothPassesMustCullABlock) {
+  const Block block = block_of({{26, 0, 20}}, {0, 0, -1});
+  Splatting splatting = splatting_of(Faces::front, 5);
+  EXPECT_EQ(BlockFate::outside_frustum, fate_of(block, splatting));
+  splatting.depth_offset_scheme = DepthOffsetScheme::camera_z;
+  EXPECT_EQ(BlockFate::drawn, fate_of(block, splatting));
+}
+
+// Far beyond the right side, seen at a cosine of 0.02 and of 0.2: nearly edge-on nobody knows how long it is.
+TEST(BlockCulling, SplatsWithoutAnAffineMapAreDrawn) {
+  const glm::vec3 position(60, 0, 20), ray = glm::normalize(position), across(-ray.z, 0, ray.x);
+  const auto seen_at = [&](float cosine) { return glm::normalize(across - cosine * ray); };
+  EXPECT_EQ(BlockFate::drawn, fate_of(position, seen_at(0.02f)));
+  EXPECT_EQ(BlockFate::outside_frustum, fate_of(position, seen_at(0.2f)));
+}
+
+// A row of surfels across the view, 20 units ahead, at 45 degrees to the axes: the corners of its box reach
+// from 0.5 to 39.5.
+TEST(BlockCulling, ACylinderHoldsWhatLiesAcrossTheBox) {
+  const glm::vec3 ahead = glm::normalize(glm::vec3(1, 0, 1)), right = glm::normalize(glm::vec3(1, 0, -1));
+  const Block block = block_of({20.0f * ahead - 19.5f * right, 20.0f * ahead + 19.5f * right}, ahead);
+  ASSERT_EQ(block.count, 2u);
+  EXPECT_EQ(BlockFate::facing_away, fate_of(block, splatting_of(), {1, 0, 1}));
 }
 
 // The eye is behind all of the block's planes, not behind that of its middle alone.

@@ -110,6 +110,8 @@ TEST(LdcTree, LevelsOfAPlaneQuarter) {
       surfels.push_back({glm::vec3(x, 0, y), glm::vec3(0, 1, 0), std::sqrt(2.0f), glm::vec3(x < 32, 0, 1)});
   const LdcTree tree = build_ldc_tree(surfels, 64);
   ASSERT_EQ(4u, tree.levels.size());
+  EXPECT_EQ(64u, build_ldc_tree(surfels, 40).levels[0].blocks.size())
+      << "64 is a smaller step from 40 than 16";
   for (std::size_t l = 0; l < tree.levels.size(); ++l) {
     const TreeLevel& level = tree.levels[l];
     const double scale = std::exp2(static_cast<double>(l));
@@ -124,6 +126,14 @@ TEST(LdcTree, LevelsOfAPlaneQuarter) {
     EXPECT_NEAR(0.5, color.r, 1e-6);
     EXPECT_NEAR(1, color.b, 1e-6);
   }
+}
+
+// A pixel is radius / sqrt 2 wide, and twice that a level up, where a surfel reaches to its neighbours.
+TEST(LdcTree, ALoneSurfelGrowsWithItsLevel) {
+  const std::vector<Surfel> apart{{{0, 0, 0}, {0, 1, 0}, 1, {}}, {{100, 0, 0}, {0, 1, 0}, 1, {}}};
+  const LdcTree tree = build_ldc_tree(apart, 1);
+  ASSERT_EQ(tree.levels[1].surfels.size(), 2u);
+  EXPECT_FLOAT_EQ(tree.levels[1].surfels[0].radius, 2);
 }
 
 TEST(LdcTree, OfNothingAndOfOneSurfel) {
