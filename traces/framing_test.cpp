@@ -107,5 +107,25 @@ TEST(Framing, CornersOfASplatLieWhereItsDomainEnds) {
   EXPECT_NEAR(corner_reach(splatting) * surfel.radius, std::numbers::sqrt2 * half_side, 1e-12);
 }
 
+// Quads of the first pass reach sqrt 2 radii, and more room is left than that: 2.
+TEST(Framing, ThePlanesAreTwoRadiiFromSmallSplats) {
+  Camera camera;
+  camera.eye = {0, 0, -9};
+  const std::vector<Surfel> one{{{0, 0, 0}, {0, 0, -1}, 0.5f, {}}};
+  frame_camera(one, 1, {64, 64}, {.eye = true}, camera);
+  EXPECT_DOUBLE_EQ(camera.near, 8);
+  EXPECT_DOUBLE_EQ(camera.far, 10);
+}
+
+// With surfels on both sides of the eye the near plane is at a thousandth of the far one's distance.
+TEST(Framing, ThePlanesOfAnEyeInsideAreNotTooFarApart) {
+  Camera camera;
+  camera.target = {0, 0, 1};
+  const std::vector<Surfel> around{{{0, 0, -5}, {0, 0, 1}, 0.5f, {}}, {{0, 0, 9}, {0, 0, -1}, 0.5f, {}}};
+  frame_camera(around, 1, {64, 64}, {.eye = true, .target = true}, camera);
+  EXPECT_DOUBLE_EQ(camera.far, 10);
+  EXPECT_DOUBLE_EQ(camera.near, 0.01);
+}
+
 }  // namespace
 }  // namespace splatscope::traces

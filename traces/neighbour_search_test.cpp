@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/stop.h"
+#include "traces/neighbours.h"
 
 namespace splatscope::traces {
 namespace {
@@ -36,6 +37,18 @@ TEST(NeighbourSearch, LooksAtNoMoreOfAPlaceThanItIsAskedFor) {
   }
   search.find(2 * kMany, 5, found);
   EXPECT_EQ(found.squared_distance, (std::vector<double>{0, 0, 0, 4, 4}));
+}
+
+// Those with others in the same place have none nearby: two of them look beyond their copy, five do not.
+TEST(AverageSpacing, IsThatOfDifferentPlaces) {
+  const auto spacing_of = [](std::initializer_list<float> places) {
+    std::vector<Surfel> surfels;
+    for (const float x : places) surfels.push_back({{x, 0, 0}, {0, 1, 0}, 1, {}});
+    return average_spacing(surfels);
+  };
+  EXPECT_DOUBLE_EQ(spacing_of({0, 0, 1, 3}), (1 + 1 + 1 + 2) / 4.0);
+  EXPECT_DOUBLE_EQ(spacing_of({0, 0, 0, 0, 0, 1, 3}), (1 + 2) / 2.0);
+  EXPECT_EQ(spacing_of({0, 0}), 0);
 }
 
 }  // namespace

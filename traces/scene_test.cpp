@@ -174,6 +174,33 @@ TEST(Scene, ErrorsNameLineAndExpectation) {
             "s.toml:2: camera.eye is [ 1, inf, 2 ], expected an array of three numbers from -1e+30 to 1e+30");
 }
 
+TEST(Scene, ErrorsShowLittleOfALongValue) {
+  EXPECT_EQ(
+      scene_error("[frame]\nwidth = \"" + std::string(100, 'w') + "\"\n"),
+      "s.toml:2: frame.width is '" + std::string(56, 'w') + "..., expected a whole number from 1 to 4096");
+}
+
+TEST(Scene, ADepthOffsetIsTheSpacingUnlessItIsGiven) {
+  constexpr const char* kPlane = "[surfels]\ncolumns = 4\nrows = 4\n";
+  EXPECT_EQ(parse_scene(kPlane, "s.toml").splatting.depth_offset, 1);
+  EXPECT_EQ(parse_scene(std::string(kPlane) + "[splatting]\ndepth_offset = 0.25\n", "s.toml")
+                .splatting.depth_offset,
+            0.25);
+}
+
+TEST(Scene, AMeshIsDescribedByWhatIsWrongWithIt) {
+  EXPECT_EQ(
+      describe(MeshCounts{.triangles = 1,
+                          .triangles_not_finite = 2,
+                          .triangles_out_of_range = 3,
+                          .triangles_degenerate = 4,
+                          .normals_computed = 5,
+                          .textures_unreadable = 6,
+                          .materials_unreadable = 7}),
+      "from 1 triangles, 9 left out (2 not finite, 3 with a corner that does not exist, 4 without area), "
+      "5 normals computed, 6 textures unreadable, 7 files of materials unreadable");
+}
+
 TEST(Scene, CameraMustSeeSomething) {
   EXPECT_EQ(scene_error("[camera]\nfar = 5\nnear = 5\n"),
             "s.toml:3: camera.near is 5 and camera.far 5, expected near < far");

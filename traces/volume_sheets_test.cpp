@@ -88,5 +88,28 @@ TEST(VolumeSheets, RectanglesKeepToTheFrame) {
   EXPECT_TRUE(planned(hidden).rectangle.empty());
 }
 
+// In the middle of one voxel another of half its opacity, three pixels away in x and y, is beyond its cutoff
+// (r = 4.5); half-way each has its part, 0.2 exp(-0.25) + 0.1 exp(-1) = 0.193, which is less.
+TEST(VolumeSheets, VoxelsEndAtTheirCutoff) {
+  EXPECT_EQ(planned({voxel(20.5f, 20.5f, 0.2f), voxel(23.5f, 23.5f, 0.1f)}).composite,
+            std::ceil(255 * 0.2 / 0.96));
+}
+
+// 255 (255 / 213) 0.6 / 0.96 = 191 of 255: little gain for a pass over the sheet.
+TEST(VolumeSheets, ALittleGainIsNotWorthAPass) {
+  std::vector<HostVoxel> voxels(5, voxel(40.5f, 40.5f, 0.15f));
+  voxels[0] = voxel(20.5f, 20.5f, 0.8f);
+  const SheetPlan plan = planned(voxels);
+  EXPECT_EQ(plan.voxels[1][kSharedVariance].size(), 4u);
+  EXPECT_EQ(plan.rescale, (std::array{255, 255, 255, 255}));
+}
+
+TEST(VolumeSheets, ALevelBeginsAtAQuarterOfTheOneBefore) {
+  const SheetPlanner planner{kView, kCutoff, true, true, 0.5};
+  EXPECT_EQ(planner.level_of(0.126), 0u);
+  EXPECT_EQ(planner.level_of(0.125), 1u);
+  EXPECT_EQ(planner.level_of(1e-9), kVoxelLevels - 1);
+}
+
 }  // namespace
 }  // namespace splatscope::traces

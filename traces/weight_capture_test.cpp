@@ -132,6 +132,24 @@ TEST(WeightCapture, SurfelsAtEdgesHaveAWeightForEachVertex) {
   EXPECT_GT(different, corners.at_edges * 9 / 10);
 }
 
+// The one view lies on +x. Of a square that turns its back to it everything is seen where both faces are
+// drawn, nothing where the front is; and what is not seen has no weights of its own at edges.
+TEST(WeightCapture, AViewSeesTheFacesThatAreDrawn) {
+  std::vector<Surfel> surfels = jittered_square(8, 10);
+  for (Surfel& surfel : surfels) {
+    surfel.position = {surfel.position.y, surfel.position.x, surfel.position.z};
+    surfel.normal = {-1, 0, 0};
+  }
+  Splatting splatting = splatting_of(surfels);
+  const CapturedWeights both = capture_weights(surfels, splatting, capture_of(1, 128), NumberFormats{});
+  EXPECT_EQ(both.captured, surfels.size());
+  EXPECT_GT(both.at_edges, 0u);
+  splatting.faces = Faces::front;
+  const CapturedWeights front = capture_weights(surfels, splatting, capture_of(1, 128), NumberFormats{});
+  EXPECT_EQ(front.unseen, surfels.size());
+  EXPECT_EQ(front.at_edges, 0u);
+}
+
 // Views that see nothing well are left out. One more surfel, which faces these, brings them back.
 TEST(WeightCapture, ViewsLeftOutChangeNoWeight) {
   std::vector<Surfel> surfels = jittered_square(4, 7);  // a surfel's corners are far apart in these views
@@ -325,6 +343,36 @@ TEST(Gamma, CountsWhatIsSeenTogether) {
   }
   EXPECT_EQ(in_the_middle(two, 1), one);
   EXPECT_DOUBLE_EQ(in_the_middle(two, 2), 2 * one);
+}
+
+// In a view along the normal of one surfel another lies 1 / cos as far behind it as its plane does: 0.9
+// or 1.5 at 60 degrees. One at right angles shows nothing.
+TEST(Gamma, CountsByTheDistanceAlongTheView) {
+  Splatting splatting;
+  splatting.cutoff = splatting.sigma = splatting.depth_offset = 1;
+  const std::vector<Surfel> asked{{{0, 0, 0}, {0, 0, 1}, 1, {}}};
+  const auto splats = [&](const glm::vec3& normal, float behind) {
+    std::vector<Surfel> both = asked;
+    both.push_back({-behind * normal, normal, 1, {}});
+    return filter_sums(both, splatting, asked)[0] * 2 * std::numbers::pi;
+  };
+  const glm::vec3 tilted(std::sqrt(0.75f), 0, 0.5f);
+  EXPECT_NEAR(splats(tilted, 0.45f), 2, 1e-6);
+  EXPECT_NEAR(splats(tilted, 0.75f), 1, 1e-6);
+  EXPECT_NEAR(splats({1, 0, 0}, 0), 1, 1e-6);
+}
+
+// In the corner of its square, at 1.3 standard deviations along both axes, a splat cut off at sqrt(2) adds
+// exp(-1.69); cut off in a circle it does not reach so far.
+TEST(Gamma, CountsTheCornersOfSquareSplats) {
+  Splatting splatting;
+  splatting.cutoff = splatting.sigma = 1;
+  splatting.depth_offset = 0.1;
+  const std::vector<Surfel> surfels{{{0, 0, 0}, {0, 0, 1}, 1, {}}},
+      asked{{{1.3f, 1.3f, 0}, {0, 0, 1}, 1, {}}};
+  EXPECT_NEAR(filter_sums(surfels, splatting, asked)[0] * 2 * std::numbers::pi, std::exp(-1.69), 1e-6);
+  splatting.circular_cutoff = true;
+  EXPECT_EQ(filter_sums(surfels, splatting, asked)[0], 0);
 }
 
 }  // namespace
