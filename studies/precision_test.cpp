@@ -18,6 +18,22 @@ Switch switch_of(std::string_view step, std::string_view level) {
   return {};
 }
 
+// One level of each step, which leaves the machine's numbers as they are.
+TEST(Precision, the_machine_has_one_level_of_each_step) {
+  std::vector<std::string> levels;
+  for (const Switch& one : precision_switches()) {
+    if (!one.of_the_machine) continue;
+    levels.push_back(one.step + " " + one.level);
+    Pipeline pipeline = machine_pipeline();
+    one.turn(pipeline);
+    EXPECT_EQ(pipeline.numbers, machine_pipeline().numbers) << one.step << ' ' << one.level;
+  }
+  EXPECT_EQ(levels, (std::vector<std::string>{"nothing ", "texel bits 8", "texture size 438", "circle, c 1",
+                                              "diffuse 8 bits", "combiner 9 bits", "frame 8 bits",
+                                              "depth z24", "arithmetic nv20", "sub-pixel bits 4",
+                                              "gamma, per pixel 0.73", "weights divided per pixel"}));
+}
+
 // On a small plane: an exact pipeline is near the reference, the machine is not, and each step costs
 // something.
 TEST(Precision, steps_cost_what_they_drop) {

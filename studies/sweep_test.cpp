@@ -78,7 +78,12 @@ TEST_F(Sweeps, EveryPointIsWhatARunOfItsOwnSays) {
     for (const auto& [key, value] : point.settings) machine::set(changed, key + "=" + value);
     const FrameRun run = run_frame(trace, changed, Fidelity::cycle);
     EXPECT_EQ(point.results, timing_json(*run.timing));
+    const Rate rate = rate_of(*run.timing);
+    EXPECT_EQ(point.rate.fps, rate.fps);
+    EXPECT_EQ(point.rate.bottleneck, rate.bottleneck);
+    EXPECT_EQ(point.rate.share, rate.share);
   }
+  EXPECT_FALSE(sweep.seed) << "no samples";
   const auto json = results_of(sweep, machine, Fidelity::cycle);
   EXPECT_EQ(json["points"][5]["set"]["vertex.units"], "3");
   EXPECT_EQ(json["points"][5]["set"]["memory.channels"], "4");
@@ -100,9 +105,13 @@ TEST_F(Sweeps, TheMachinesAreCheckedWithAllTheirParameters) {
 }
 
 TEST_F(Sweeps, TheFunctionIsComputedForEachOfItsFormats) {
-  const Sweep sweep = run_sweep(
-      file, machine, {{"vertex.cache_entries", {"1", "18"}}, {"setup.latency", {"5", "6"}}}, Fidelity::cycle);
+  std::vector<double> told;
+  const Sweep sweep =
+      run_sweep(file, machine, {{"vertex.cache_entries", {"1", "18"}}, {"setup.latency", {"5", "6"}}},
+                Fidelity::cycle, {}, [&](double fraction) { told.push_back(fraction); });
   EXPECT_EQ(sweep.functions, 2u);
+  EXPECT_TRUE(std::ranges::is_sorted(told)) << "over both";
+  EXPECT_EQ(told.back(), 1);
   EXPECT_NE(sweep.points[0].results, sweep.points[2].results);
 }
 
@@ -118,6 +127,9 @@ TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
   const Sweep second = sweep();
   EXPECT_EQ(second.functions, 0u);
   EXPECT_EQ(second.from_cache, 1u);
+  const auto host = results_of(second, machine, Fidelity::cycle)["host"];
+  EXPECT_EQ(host["functions_computed"], 0);
+  EXPECT_EQ(host["functions_from_cache"], 1);
   EXPECT_EQ(second.points[1].results, first.points[1].results);
 
   const std::filesystem::path stored = std::filesystem::directory_iterator(cache)->path();

@@ -79,6 +79,8 @@ TEST(CommandLine, SampleRefusesWhatItCannotUse) {
   expect_refused(folder, {"sample", "square.obj", "-o", "s.ply", "--pattern", "tartan"},
                  "tartan not in {own,plain,checker");
   expect_refused(folder, {"sample", "square.obj", "-o", "s.ply", "-n", "0"}, "-n: ");
+  expect_refused(folder, {"sample", "square.obj", "-o", "s.ply", "--pattern-scale", "0.5"},
+                 "--pattern-scale: without squares, stripes or spots");
   for (const std::string option : {"--shading", "--pattern-scale"})
     expect_refused(folder, {"sample", "square.obj", "-o", "s.ply", option, "nan"},
                    option + ": \"nan\", expected a number");

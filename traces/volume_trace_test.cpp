@@ -99,6 +99,13 @@ TEST(VolumeTrace, both_programs_draw_the_same) {
   EXPECT_EQ(shared.flat, 0u);
   EXPECT_EQ(own.flat, 0u);
   EXPECT_GT(own.vertex_bytes, 2 * shared.vertex_bytes);
+  // Four vertices of 12 + 16 bytes a splat, which are written anew each frame, and of 20 a sheet.
+  EXPECT_EQ(shared.vertex_bytes, 4 * (28 * shared.splats + 20 * shared.sheets));
+  for (const Command& command : shared.trace.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (!draw) continue;
+    EXPECT_EQ(shared.trace.buffers[draw->vertex_buffer].place == MemoryPlace::agp, draw->texture.has_value());
+  }
   const Frame a = drawn(shared.trace, exact_formats()), b = drawn(own.trace, exact_formats());
   for (std::size_t i = 0; i < 96 * 96; ++i) {
     // A fragment at a splat's edge may fall to one side or the other: exp(-2) of a splat of 0.05.
