@@ -5,8 +5,11 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <set>
+#include <string>
 
 #include "kernels/reference/volume/procedural.h"
+#include "kernels/voxel_ewa/programs.h"
 #include "model/render.h"
 #include "model/stop.h"
 #include "traces/trace_file.h"
@@ -111,6 +114,19 @@ TEST(VolumeTrace, both_programs_draw_the_same) {
     // A fragment at a splat's edge may fall to one side or the other: exp(-2) of a splat of 0.05.
     for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(a.color(i)[c], b.color(i)[c], 0.02) << i;
   }
+}
+
+// A draw has the pixel program with the fewest steps that hold its largest contribution: where that fills the
+// sheet to 0.96 all 255, as the next has 181, and where it is less than 0.7 fewer.
+TEST(VolumeTrace, faint_draws_have_steps_of_their_own) {
+  const VolumeTrace recorded = volume_trace(view_of_shells(96), shells(24, false), {});
+  std::set<std::string> programs;
+  for (const Command& command : recorded.trace.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (draw && draw->texture) programs.insert(recorded.trace.programs[*draw->pixel_program].text);
+  }
+  EXPECT_TRUE(programs.contains(kernels::voxel_pixel_program(255).text));
+  EXPECT_GT(programs.size(), 2u);
 }
 
 // What a file holds is what is drawn; it keeps every rule of trace files.
