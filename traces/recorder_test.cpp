@@ -46,6 +46,8 @@ TEST(Recorder, EveryAlgorithmIsASoundTraceOfTwoPasses) {
   for (const Algorithm algorithm : {Algorithm::no_ewa, Algorithm::ewa_per_pixel, Algorithm::ewa_per_surfel}) {
     const Trace trace = record(small_plane(algorithm), NumberFormats{}).trace;
     EXPECT_NO_THROW(check_trace(trace, "recorded"));
+    EXPECT_EQ(trace.buffers[0].bytes.size(), 24u * 20 * 6 * 2)
+        << "indices of 16 bits for these surfels alone";
     const bool per_pixel = algorithm == Algorithm::ewa_per_pixel;
     ASSERT_EQ(per_pixel ? 4u : 3u, trace.commands.size());
     EXPECT_FALSE(std::get<Draw>(trace.commands[1]).state.color_write);

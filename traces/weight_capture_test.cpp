@@ -148,6 +148,7 @@ TEST(WeightCapture, AViewSeesTheFacesThatAreDrawn) {
   const CapturedWeights front = capture_weights(surfels, splatting, capture_of(1, 128), NumberFormats{});
   EXPECT_EQ(front.unseen, surfels.size());
   EXPECT_EQ(front.at_edges, 0u);
+  EXPECT_EQ(front.weights[0], equal_weights(1)) << "there is no median";
 }
 
 // Views that see nothing well are left out. One more surfel, which faces these, brings them back.
@@ -245,6 +246,27 @@ TEST(Edges, OfAThinPlate) {
     EXPECT_FALSE(edge[k] && in_the_middle(plate[k], 5)) << k;
     EXPECT_TRUE(edge[k] || in_the_middle(plate[k], 7.8)) << k;
   }
+}
+
+// A sheet that faces the other way goes on where the upper one ends.
+TEST(Edges, AreNotFilledByWhatFacesAway) {
+  std::vector<Surfel> sheets;
+  for (Surfel surfel : jittered_square(16, 8)) {
+    if (surfel.position.x < 0) sheets.push_back(surfel);
+    surfel.position.y -= 0.1f;
+    surfel.normal = -surfel.normal;
+    sheets.push_back(surfel);
+  }
+  const std::vector<char> edge = at_edge(sheets);
+  int rim = 0, found = 0;
+  for (std::size_t k = 0; k < sheets.size(); ++k) {
+    const Surfel& surfel = sheets[k];
+    if (surfel.normal.y < 0 || surfel.position.x < -0.7f || std::abs(surfel.position.z) > 6) continue;
+    ++rim;
+    found += edge[k];
+  }
+  EXPECT_GT(rim, 5);
+  EXPECT_GE(found, rim * 8 / 10) << "of " << rim;
 }
 
 TEST(Gamma, IsThePapersForASquareGridAndLessWhereMoreSplatsOverlap) {
