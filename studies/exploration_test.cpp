@@ -26,7 +26,7 @@ const Hardware& hardware(std::string_view name) {
 }
 
 // On the plane of Table 1, simulated cycle by cycle.
-TEST(Exploration, a_program_of_30_slots_nearly_doubles_the_frame_rate) {
+TEST(Exploration, AProgramOf30SlotsNearlyDoublesTheFrameRate) {
   constexpr std::string_view kNames[] = {"paper", "facing"};
   const auto rows =
       program_rows(traces::load_scene("checkerboard-ewa-per-surfel"), kNames, Fidelity::cycle, 2000);
@@ -50,7 +50,7 @@ TEST(Exploration, a_program_of_30_slots_nearly_doubles_the_frame_rate) {
 }
 
 // What each wish is for, on a small plane.
-TEST(Exploration, wishes_do_what_they_are_for) {
+TEST(Exploration, WishesDoWhatTheyAreFor) {
   const std::vector<Hardware> wishes{hardware("as it was"),          hardware("4 vertex units"),
                                      hardware("half frame"),         hardware("divider"),
                                      hardware("4 corners a vertex"), hardware("point sprites"),
@@ -77,7 +77,7 @@ TEST(Exploration, wishes_do_what_they_are_for) {
 }
 
 // Lines of docs/exploration.md, made again.
-TEST(Exploration, the_documentation_holds) {
+TEST(Exploration, TheDocumentationHolds) {
   const std::string page = text_of(SPLATSCOPE_SOURCE "/docs/exploration.md");
   const std::vector<Hardware> wishes{hardware("as it was"), hardware("8 vertex units"), hardware("divider")};
   for (const WhatIfRow& row :

@@ -24,7 +24,7 @@ ExtremeSweep sweep(std::string_view name) {
 }
 
 // Edge-on, q - t cancels: the printed formulas are wrong long before the program is.
-TEST(Extremes, printed_formulas_break_before_the_program) {
+TEST(Extremes, PrintedFormulasBreakBeforeTheProgram) {
   const ExtremeRow printed = sweep_row(sweep("cosine"), splatter("Appendix A as printed"), 100, 1);
   const ExtremeRow program = sweep_row(sweep("cosine"), splatter("paper, ieee"), 100, 1);
   ASSERT_FALSE(std::isnan(printed.over_1));
@@ -32,7 +32,7 @@ TEST(Extremes, printed_formulas_break_before_the_program) {
 }
 
 // p = 0 with B < 0: Sgn(Bp) mirrors the ellipse.
-TEST(Extremes, the_printed_sign_mirrors_an_ellipse) {
+TEST(Extremes, ThePrintedSignMirrorsAnEllipse) {
   const ExtremeRow printed = sweep_row(sweep("turn towards p = 0"), splatter("Appendix A as printed"), 1, 1);
   EXPECT_FALSE(std::isnan(printed.over_10));
   for (const std::string_view name : {"paper, ieee", "paper, nv20", "facing, ieee"}) {
@@ -41,7 +41,7 @@ TEST(Extremes, the_printed_sign_mirrors_an_ellipse) {
 }
 
 // Each guard costs slots and repairs something.
-TEST(Extremes, guards_repair_what_they_are_for) {
+TEST(Extremes, GuardsRepairWhatTheyAreFor) {
   for (const Guard& guard : guards()) {
     SCOPED_TRACE(guard.name);
     const GuardRow row = guard_row(guard, Arithmetic::ieee, 300, 1);
@@ -52,7 +52,7 @@ TEST(Extremes, guards_repair_what_they_are_for) {
 }
 
 // A splatter whose error is the value of the sweep itself, in per mille.
-TEST(Extremes, a_row_says_where_an_error_passes_each_bound) {
+TEST(Extremes, ARowSaysWhereAnErrorPassesEachBound) {
   ExtremeSweep errors = sweep("cosine");
   errors.values = {5, 50, 500, 5000};
   std::size_t point = 0;

@@ -60,7 +60,7 @@ TEST(Hierarchy, RefinesFrameByFrame) {
   EXPECT_GT(rows.back().milliseconds, 2 * rows.front().milliseconds);
   // The last frame is that of the finest level alone.
   const CullingRow finest = culling_row(small_sphere(), machine::load(machine::kGeForce4));
-  EXPECT_NEAR(rows.back().milliseconds * finest.fps, 1000, 50);
+  EXPECT_NEAR(rows.back().milliseconds * finest.fps, 1000, 1);
   // Over the pixels that one of the two drew on: nothing else is seen.
   const Image &first = rows.front().picture, &last = rows.back().picture;
   std::vector<unsigned char> drawn;

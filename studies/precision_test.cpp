@@ -19,7 +19,7 @@ Switch switch_of(std::string_view step, std::string_view level) {
 }
 
 // One level of each step, which leaves the machine's numbers as they are.
-TEST(Precision, the_machine_has_one_level_of_each_step) {
+TEST(Precision, TheMachineHasOneLevelOfEachStep) {
   std::vector<std::string> levels;
   for (const Switch& one : precision_switches()) {
     if (!one.of_the_machine) continue;
@@ -36,7 +36,7 @@ TEST(Precision, the_machine_has_one_level_of_each_step) {
 
 // On a small plane: an exact pipeline is near the reference, the machine is not, and each step costs
 // something.
-TEST(Precision, steps_cost_what_they_drop) {
+TEST(Precision, StepsCostWhatTheyDrop) {
   const std::vector<PrecisionScene> scenes{precision_plane(45, 32, 64)};
   const std::vector<Switch> switches{switch_of("nothing", ""),        switch_of("texel bits", "4"),
                                      switch_of("texel bits", "8"),    switch_of("texture size", "16"),
@@ -58,7 +58,7 @@ TEST(Precision, steps_cost_what_they_drop) {
 }
 
 // Rounding to nearest loses what is under half a step, truncation more; wide and dithered frames keep it.
-TEST(Precision, many_small_splats_vanish_in_eight_bits) {
+TEST(Precision, ManySmallSplatsVanishInEightBits) {
   const double overlaps[] = {4, 16, 300};
   const auto rows = overlap_rows(overlaps, 96);
   const auto row_of = [&](std::string_view frame, double count) {
@@ -86,7 +86,7 @@ TEST(Precision, many_small_splats_vanish_in_eight_bits) {
   }
 }
 
-TEST(Precision, a_depth_offset_is_for_curved_surfaces) {
+TEST(Precision, ADepthOffsetIsForCurvedSurfaces) {
   const double offsets[] = {0.125, 1, 8};
   const auto rows = depth_rows(offsets, 128);
   ASSERT_EQ(rows.size(), 9u);
@@ -101,7 +101,7 @@ TEST(Precision, a_depth_offset_is_for_curved_surfaces) {
 }
 
 // Lines of docs/precision.md, made again for the first of its scenes.
-TEST(Precision, the_documentation_holds) {
+TEST(Precision, TheDocumentationHolds) {
   const std::string page = text_of(SPLATSCOPE_SOURCE "/docs/precision.md");
   const std::vector<PrecisionScene> scenes{precision_plane(0, 128, 256)};
   const std::vector<Switch> switches{switch_of("nothing", ""), switch_of("texel bits", "8"),
@@ -113,7 +113,7 @@ TEST(Precision, the_documentation_holds) {
 
 // 200 pixels that should be 0.5, and one beyond the surface. Right but for three: one a tenth off in red, one
 // at 1 where 0.6 is wanted, a black one; and for white that is white as it should be.
-TEST(Precision, errors_are_counted_over_the_surface) {
+TEST(Precision, ErrorsAreCountedOverTheSurface) {
   NumberFormats formats;
   formats.frame = FrameFormat::float32;
   Frame frame(201, 1, formats);

@@ -38,7 +38,7 @@ Frame grey_frame() {
   return frame;
 }
 
-TEST(ReferenceComparison, an_exact_frame_is_infinitely_near) {
+TEST(ReferenceComparison, AnExactFrameIsInfinitelyNear) {
   const Comparison c = compare(grey_frame(), grey_square());
   EXPECT_EQ(c.surface_pixels, 25u);
   EXPECT_EQ(c.inside_pixels, 9u);  // of the 5 x 5, those whose neighbours meet a quad and lie in the picture
@@ -47,7 +47,7 @@ TEST(ReferenceComparison, an_exact_frame_is_infinitely_near) {
   EXPECT_EQ(c.worst, 0.0);
 }
 
-TEST(ReferenceComparison, counts_holes_and_differences_on_the_surface_alone) {
+TEST(ReferenceComparison, CountsHolesAndDifferencesOnTheSurfaceAlone) {
   Frame frame = grey_frame();
   frame.colors32[6 * 3 + 3] = {0, 0, 0, 0};     // a hole
   frame.colors32[6 * 2 + 2] = {0, 0, 0, 0.5f};  // black, but something was drawn
@@ -63,7 +63,7 @@ TEST(ReferenceComparison, counts_holes_and_differences_on_the_surface_alone) {
   EXPECT_NEAR(c.psnr, -10 * std::log10((9 * 0.25 + (49 + 81) / (255.0 * 255)) / (3 * 25)), 1e-6);
 }
 
-TEST(ReferenceComparison, tells_what_rounded_to_black_from_holes) {
+TEST(ReferenceComparison, TellsWhatRoundedToBlackFromHoles) {
   Frame frame = grey_frame(), unrounded = grey_frame();
   for (const std::size_t pixel : {6 * 2 + 2, 6 * 2 + 3, 6 * 3 + 3}) frame.colors32[pixel] = {};
   unrounded.colors32[6 * 3 + 3] = {};
@@ -84,7 +84,7 @@ kernels::ScreenSpacePicture two_planes(double step) {
   return picture;
 }
 
-TEST(ReferenceComparison, tells_pixels_off_edges_apart) {
+TEST(ReferenceComparison, TellsPixelsOffEdgesApart) {
   NumberFormats formats;
   formats.frame = FrameFormat::float32;
   Frame frame(24, 24, formats);
@@ -99,7 +99,7 @@ TEST(ReferenceComparison, tells_pixels_off_edges_apart) {
   EXPECT_NEAR(slope.psnr_off_edges, -10 * std::log10((0.01 + 0.75) / (3.0 * 196)), 1e-4);
 }
 
-TEST(ReferenceComparison, says_so_where_nothing_is_covered) {
+TEST(ReferenceComparison, SaysSoWhereNothingIsCovered) {
   EXPECT_EQ(describe_psnr({.surface_pixels = 12, .psnr = 40.06}), "PSNR 40.1 dB over 12 pixels");
   kernels::SplatSums nothing = grey_square();
   for (auto& sum : nothing.sums) sum = {};
@@ -107,13 +107,13 @@ TEST(ReferenceComparison, says_so_where_nothing_is_covered) {
   EXPECT_EQ(describe_psnr({}), "no pixel is covered");
 }
 
-TEST(ReferenceComparison, maps_have_names) {
+TEST(ReferenceComparison, MapsHaveNames) {
   EXPECT_EQ(screen_map_by_name("affine"), kernels::ScreenMap::affine);
   EXPECT_EQ(screen_map_by_name("perspective"), kernels::ScreenMap::perspective);
   EXPECT_THROW(screen_map_by_name("exact"), UserError);
 }
 
-TEST(ReferenceComparison, difference_picture_is_grey_where_they_agree) {
+TEST(ReferenceComparison, DifferencePictureIsGreyWhereTheyAgree) {
   Frame frame = grey_frame();
   frame.colors32[0] = {0, 0, 0, 0};
   frame.colors32[7] = {0.51f, 0.5f, 0.4f, 1};
@@ -125,7 +125,7 @@ TEST(ReferenceComparison, difference_picture_is_grey_where_they_agree) {
 }
 
 // What the volume lets through is its background: all of it beside the volume, little in its middle.
-TEST(ReferenceComparison, a_volume_lies_over_its_background) {
+TEST(ReferenceComparison, AVolumeLiesOverItsBackground) {
   const auto picture = [](const char* background) {
     const std::string text =
         std::string("[volume]\ngenerator = \"head\"\nvoxels = [16, 16, 16]\nbackground = ") + background +

@@ -7,14 +7,14 @@
 namespace splatscope::studies {
 namespace {
 
-TEST(SoftwareComparison, growth_is_the_slope_over_pixels) {
+TEST(SoftwareComparison, GrowthIsTheSlopeOverPixels) {
   const std::array rows = {SoftwareRow{"a", 256, 1.0, 0}, SoftwareRow{"b", 256, 3.0, 0},
                            SoftwareRow{"a", 512, 4.0, 0}, SoftwareRow{"b", 512, 6.0, 0}};
   EXPECT_NEAR(1.0, growth(rows, "a"), 1e-12) << "four times the pixels, four times the time";
   EXPECT_NEAR(0.5, growth(rows, "b"), 1e-12);
 }
 
-TEST(SoftwareComparison, draws_every_resolution_by_every_renderer) {
+TEST(SoftwareComparison, DrawsEveryResolutionByEveryRenderer) {
   const traces::Scene scene = traces::parse_scene(
       "surfels = { generator = \"sphere\", count = 2000 }\n[capture]\nviews = 1\nframe_size = 64\n",
       "sphere");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "model/testing/scratch_folder.h"
 
 namespace splatscope::studies {

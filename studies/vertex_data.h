@@ -33,6 +33,7 @@ struct VertexDataRow {
 // surfel normalised, with weights captured on the machine; its programs and vertex memory are not read.
 std::vector<VertexDataRow> vertex_data_rows(const traces::Scene& scene, const Progress& progress = {});
 
+// An object a row, for results.json.
 nlohmann::ordered_json json_of(const std::vector<VertexDataRow>& rows);
 
 void study_vertex_data(Findings& findings, const Progress& progress);

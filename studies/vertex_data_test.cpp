@@ -8,7 +8,7 @@ namespace splatscope::studies {
 namespace {
 
 // A small plane: the vertices' work and bytes decide, as on the large ones.
-TEST(VertexData, programs_trade_instructions_for_bytes) {
+TEST(VertexData, ProgramsTradeInstructionsForBytes) {
   const traces::Scene scene = traces::parse_scene(
       "[surfels]\ngenerator = \"plane\"\ncolumns = 48\nrows = 48\n[frame]\nwidth = 96\nheight = 96\n"
       "[splatting]\nalgorithm = \"ewa-per-surfel\"\n[capture]\nviews = 2\nframe_size = 96\n"
@@ -42,7 +42,7 @@ TEST(VertexData, programs_trade_instructions_for_bytes) {
 }
 
 // Each figure is a number of its own, so that no two can change places.
-TEST(VertexData, every_figure_stands_under_its_name) {
+TEST(VertexData, EveryFigureStandsUnderItsName) {
   const VertexDataRow row{.programs = {"a", "b"},
                           .machine = "c",
                           .visibility_slots = 1,

@@ -45,7 +45,7 @@ std::string lasting_lines(const std::string& text) {
 
 class DocumentedNumbers : public testing::TestWithParam<Section> {};
 
-TEST_P(DocumentedNumbers, are_what_the_program_finds) {
+TEST_P(DocumentedNumbers, AreWhatTheProgramFinds) {
   const ScratchFolder folder;
   std::vector<std::string> arguments = GetParam().command;
   arguments.insert(arguments.end(), {"--quiet", "--out", folder.path().string()});
@@ -59,7 +59,7 @@ TEST_P(DocumentedNumbers, are_what_the_program_finds) {
 // made again.
 class DocumentedSensitivity : public testing::TestWithParam<std::string> {};
 
-TEST_P(DocumentedSensitivity, is_what_the_program_finds) {
+TEST_P(DocumentedSensitivity, IsWhatTheProgramFinds) {
   std::istringstream lines(section_text({"docs/table1.md", "sensitivity", {}}));
   const ScratchFolder folder;
   int compared = 0;

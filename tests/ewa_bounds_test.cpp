@@ -37,7 +37,7 @@ void expect_range(CutoffShape shape, const glm::dvec2& y, bool low, bool high) {
   EXPECT_DOUBLE_EQ(range.high, high ? value : 0.0) << y.x << " " << y.y;
 }
 
-TEST(EwaBounds, cutoff_and_edge_may_pass_either_side_within_their_tolerances) {
+TEST(EwaBounds, CutoffAndEdgeMayPassEitherSideWithinTheirTolerances) {
   constexpr CutoffShape kCircle = CutoffShape::circle, kSquare = CutoffShape::square;
   const double diagonal = std::sqrt(0.5);
   const auto at = [&](double radius) { return radius * glm::dvec2(diagonal, -diagonal); };
@@ -87,13 +87,13 @@ void compare_with_texture(CutoffShape shape, double tolerance, std::uint32_t see
   }
 }
 
-TEST(EwaBounds, texel_of_a_square_texture) {
+TEST(EwaBounds, TexelOfASquareTexture) {
   compare_with_texture(CutoffShape::square, 0.0, 1);
 }
-TEST(EwaBounds, texel_of_a_circular_texture) {
+TEST(EwaBounds, TexelOfACircularTexture) {
   compare_with_texture(CutoffShape::circle, 0.0, 2);
 }
-TEST(EwaBounds, texels_within_a_tolerance) {
+TEST(EwaBounds, TexelsWithinATolerance) {
   compare_with_texture(CutoffShape::circle, 0.2, 3);
 }
 
@@ -128,7 +128,7 @@ std::optional<Contribution> contribution(const View& view, const Surfel& surfel,
 }
 
 // Bounds against every choice of the splats within the tolerance.
-TEST(EwaBounds, bounds_are_those_of_all_choices) {
+TEST(EwaBounds, BoundsAreThoseOfAllChoices) {
   constexpr std::uint32_t kSeed = 17;
   std::printf("seed %u\n", kSeed);
   std::mt19937 generator(kSeed);

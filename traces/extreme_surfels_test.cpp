@@ -37,7 +37,7 @@ glm::vec3 unit(float x, float y, float z) {
   return v == glm::dvec3(0) ? glm::vec3(0, 0, 1) : glm::vec3(glm::normalize(v));
 }
 
-RC_GTEST_PROP(ExtremeSurfels, stay_finite_where_they_survive_clipping, ()) {
+RC_GTEST_PROP(ExtremeSurfels, StayFiniteWhereTheySurviveClipping, ()) {
   Scene scene =
       parse_scene("[frame]\nwidth = 32\nheight = 32\n[surfels]\ncolumns = 1\nrows = 1\n", "extreme");
   const kernels::View view = view_of(scene.camera, scene.frame);

@@ -6,6 +6,7 @@
 
 #include "model/error.h"
 #include "traces/fuzz_file.h"
+#include "traces/models/ply_text.h"
 #include "traces/point_file.h"
 #include "traces/scene.h"
 
@@ -14,7 +15,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const traces::FuzzFile file(".ply");
   file.write(data, size);
   try {
-    if (traces::ply_has_faces(file.path())) return 0;  // a mesh: assimp's
+    if (traces::ply_has_faces(file.path())) {
+      traces::ply_text(file.path());  // what assimp would read
+      return 0;
+    }
     if (traces::read_ply(file.path()).surfels.size() > 32) return 0;
     traces::parse_scene(fmt::format("[surfels]\nfile = \"{}\"\n", file.path().string()), "fuzz.toml");
   } catch (const UserError&) {

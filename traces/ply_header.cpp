@@ -16,19 +16,16 @@ constexpr std::size_t kMaxLine = 1024;       // characters of a header line
 constexpr int kMaxLines = 10000;             // of a header, comments too
 constexpr std::size_t kMaxProperties = 256;  // of an element
 
+constexpr std::string_view kEncodings[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+// By the values of PlyType.
+constexpr std::string_view kTypes[] = {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"};
+constexpr std::string_view kAliases[] = {"int8",  "uint8",  "int16",   "uint16",
+                                         "int32", "uint32", "float32", "float64"};
+
 std::optional<PlyType> type_named(std::string_view name) {
-  struct Named {
-    std::string_view name, alias;
-    PlyType type;
-  };
-  constexpr Named kNames[] = {
-      {"char", "int8", PlyType::int8},        {"uchar", "uint8", PlyType::uint8},
-      {"short", "int16", PlyType::int16},     {"ushort", "uint16", PlyType::uint16},
-      {"int", "int32", PlyType::int32},       {"uint", "uint32", PlyType::uint32},
-      {"float", "float32", PlyType::float32}, {"double", "float64", PlyType::float64},
-  };
-  for (const Named& n : kNames)
-    if (name == n.name || name == n.alias) return n.type;
+  for (const auto& names : {kTypes, kAliases})
+    for (int type = 0; type < 8; ++type)
+      if (names[type] == name) return static_cast<PlyType>(type);
   return std::nullopt;
 }
 
@@ -45,8 +42,11 @@ class HeaderReader {
     for (;;) {
       const std::string line = next_line();
       const auto words = words_of(line, " \t\r");
+      if (words.size() > 2 && words[0] == "comment" && words[1] == "TextureFile")
+        header_.texture_comments.push_back(line);
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words[0] == "format") {
+        if (has_format) fail("a second line \"format\"", "one");
         read_format(words);
         has_format = true;
       } else if (words[0] == "element") {
@@ -83,12 +83,11 @@ class HeaderReader {
   }
 
   void read_format(const std::vector<std::string_view>& words) {
-    constexpr std::string_view kNames[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-    const auto found =
-        words.size() == 3 ? std::find(std::begin(kNames), std::end(kNames), words[1]) : std::end(kNames);
-    if (found == std::end(kNames) || words[2] != "1.0")
+    const auto* const found =
+        words.size() == 3 ? std::ranges::find(kEncodings, words[1]) : std::end(kEncodings);
+    if (found == std::end(kEncodings) || words[2] != "1.0")
       fail("unknown format", "\"format ascii|binary_little_endian|binary_big_endian 1.0\"");
-    header_.encoding = static_cast<PlyEncoding>(found - std::begin(kNames));
+    header_.encoding = static_cast<PlyEncoding>(found - std::begin(kEncodings));
   }
 
   void read_element(const std::vector<std::string_view>& words) {
@@ -129,6 +128,14 @@ class HeaderReader {
 };
 
 }  // namespace
+
+std::string_view name(PlyEncoding encoding) {
+  return kEncodings[static_cast<std::size_t>(encoding)];
+}
+
+std::string_view name(PlyType type) {
+  return kTypes[static_cast<std::size_t>(type)];
+}
 
 PlyHeader read_ply_header(std::istream& in, std::string_view file) {
   return HeaderReader(in, file).read();

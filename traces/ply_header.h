@@ -12,6 +12,9 @@ enum class PlyEncoding { ascii, binary_little_endian, binary_big_endian };
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
+std::string_view name(PlyEncoding encoding);  // as the header has them
+std::string_view name(PlyType type);
+
 constexpr std::size_t size_in_bytes(PlyType type) {
   constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
   return kSizes[static_cast<int>(type)];
@@ -37,7 +40,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
-  int lines = 0;  // the data begins on the next one
+  std::vector<std::string> texture_comments;  // lines "comment TextureFile NAME"
+  int lines = 0;                              // the data begins on the next one
 };
 
 // Reads up to and with the line "end_header". Throws UserError "file:line: ...".

@@ -17,8 +17,8 @@ namespace {
 
 class AsciiValues : public PlyValues {
  public:
-  AsciiValues(std::istream& in, std::string_view file, int line)
-      : in_(*in.rdbuf()), file_(file), line_(line + 1) {}
+  AsciiValues(std::istream& in, std::string_view file, int line, PlyTypes types)
+      : in_(*in.rdbuf()), file_(file), line_(line + 1), types_(types) {}
 
   // Lines without a word are passed over.
   void begin_row(const PlyElement& element) override {
@@ -27,14 +27,17 @@ class AsciiValues : public PlyValues {
     if (!skip_blank_lines()) fail("the file ends within its data", "a number");
   }
 
-  // The type is not enforced: an ASCII file's numbers are what they are.
+  // Of any type: an ASCII file's numbers are what they are.
   double next(PlyType) override { return number(next_word()); }
 
-  void skip(PlyType, std::uint64_t count) override {
+  void skip(PlyType type, std::uint64_t count) override {
+    const bool whole = types_ == PlyTypes::enforced && is_integer(type);
     for (; count > 0; --count) {
       stop_if_asked();
       const std::string_view word = next_word();
       if (!is_plain(word)) number(word);
+      if (whole && word.find_first_not_of("+-0123456789") != word.npos)
+        fail(fmt::format("\"{}\" is no whole number", word), fmt::format("a value of type {}", name(type)));
     }
   }
 
@@ -115,6 +118,7 @@ class AsciiValues : public PlyValues {
   std::streambuf& in_;
   std::string_view file_;
   int line_;
+  PlyTypes types_;
   const PlyElement* element_ = nullptr;  // of the row
   std::size_t read_ = 0;                 // numbers of the row
   char word_[64];
@@ -186,8 +190,9 @@ class BinaryValues : public PlyValues {
 }  // namespace
 
 std::unique_ptr<PlyValues> ply_values(std::istream& in, std::string_view file, std::uintmax_t file_size,
-                                      const PlyHeader& header) {
-  if (header.encoding == PlyEncoding::ascii) return std::make_unique<AsciiValues>(in, file, header.lines);
+                                      const PlyHeader& header, PlyTypes types) {
+  if (header.encoding == PlyEncoding::ascii)
+    return std::make_unique<AsciiValues>(in, file, header.lines, types);
   return std::make_unique<BinaryValues>(in, file, file_size,
                                         header.encoding == PlyEncoding::binary_big_endian);
 }

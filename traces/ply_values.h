@@ -24,9 +24,12 @@ class PlyValues {
   [[noreturn]] virtual void fail(std::string_view what, std::string_view expected) const = 0;
 };
 
+// Whether what is skipped in ASCII has to be of the type that the header gives, or just a number.
+enum class PlyTypes : std::uint8_t { as_written, enforced };
+
 // `in` stands behind the header, and is of `file_size` bytes.
 std::unique_ptr<PlyValues> ply_values(std::istream& in, std::string_view file, std::uintmax_t file_size,
-                                      const PlyHeader& header);
+                                      const PlyHeader& header, PlyTypes types = PlyTypes::as_written);
 
 void skip_list(PlyValues& values, const PlyProperty& property);
 void skip_element(PlyValues& values, const PlyElement& element);

@@ -110,6 +110,7 @@ void check_mesh_vertex(const PlyHeader& header, const std::string& file) {
   has_group(*vertex, {"x", "y", "z"}, file);
   has_group(*vertex, {"nx", "ny", "nz"}, file);
   has_group(*vertex, {"red", "green", "blue"}, file);
+  has_group(*vertex, {"r", "g", "b"}, file);
   for (const PlyProperty& property : vertex->properties)
     if (std::ranges::find(kColors, property.name) != std::end(kColors) &&
         std::ranges::find(kTypes, property.type) == std::end(kTypes))

@@ -83,16 +83,20 @@ std::string describe(const SkipCounts& skipped, const EstimateCounts& estimated)
   return made.empty() ? describe(skipped) : describe(skipped) + ", " + made;
 }
 
-std::string describe(const MeshCounts& mesh) {
-  if (mesh.triangles == 0) return "";
+std::string describe_left_out(const MeshCounts& mesh) {
   const std::size_t left_out =
       mesh.triangles_not_finite + mesh.triangles_out_of_range + mesh.triangles_degenerate;
+  if (left_out == 0) return "";
+  return fmt::format("{} left out ({})", left_out,
+                     listed({{mesh.triangles_not_finite, "not finite"},
+                             {mesh.triangles_out_of_range, "with a corner that does not exist"},
+                             {mesh.triangles_degenerate, "without area"}}));
+}
+
+std::string describe(const MeshCounts& mesh) {
+  if (mesh.triangles == 0) return "";
   std::string text = fmt::format("from {} triangles", mesh.triangles);
-  if (left_out > 0)
-    text += fmt::format(", {} left out ({})", left_out,
-                        listed({{mesh.triangles_not_finite, "not finite"},
-                                {mesh.triangles_out_of_range, "with a corner that does not exist"},
-                                {mesh.triangles_degenerate, "without area"}}));
+  if (const std::string left_out = describe_left_out(mesh); !left_out.empty()) text += ", " + left_out;
   const std::string mended = listed({{mesh.normals_computed, "normals computed"},
                                      {mesh.textures_unreadable, "textures unreadable"},
                                      {mesh.materials_unreadable, "files of materials unreadable"}});

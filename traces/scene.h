@@ -143,6 +143,7 @@ std::string describe(const SkipCounts& skipped, const EstimateCounts& estimated)
 
 // "from 1000 triangles, 3 left out (3 without area), 12 normals computed"; empty where there is no mesh.
 std::string describe(const MeshCounts& mesh);
+std::string describe_left_out(const MeshCounts& mesh);  // "2 left out (2 without area)"; empty: none
 
 // "no-ewa", "ewa-per-pixel", "ewa-per-surfel": as in scene files and results.
 std::string_view name(Algorithm algorithm);

@@ -16,6 +16,7 @@
 #include "traces/neighbours.h"
 #include "traces/plane.h"
 #include "traces/point_file.h"
+#include "traces/scene.h"
 
 namespace splatscope::traces {
 namespace {
@@ -126,10 +127,7 @@ SampledModel sample_source(const SurfelSource& source, const std::filesystem::pa
     if (model.mesh.triangles.empty())
       throw UserError(
           (folder / source.file).string(), 0,
-          fmt::format("no triangle of it has a surface ({} not finite, {} with a corner that does "
-                      "not exist, {} without area), expected a mesh",
-                      counts.triangles_not_finite, counts.triangles_out_of_range,
-                      counts.triangles_degenerate));
+          fmt::format("no triangle of it has a surface: {}, expected a mesh", describe_left_out(counts)));
   }
   ModelOptions options;
   options.count = source.count > 0      ? static_cast<std::size_t>(source.count)

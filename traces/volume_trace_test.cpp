@@ -71,7 +71,7 @@ TEST(VolumeTrace, StopsWhereItIsAskedTo) {
   stop_signal = 0;
 }
 
-TEST(VolumeTrace, picture_is_that_of_the_software_with_the_same_sheets) {
+TEST(VolumeTrace, PictureIsThatOfTheSoftwareWithTheSameSheets) {
   const kernels::View view = view_of_shells(128);
   for (const double s : {1.0, 1.5, 1e4}) {  // of flat kernels; 1: none is
     const bool flat = s > 1;
@@ -92,7 +92,7 @@ TEST(VolumeTrace, picture_is_that_of_the_software_with_the_same_sheets) {
 }
 
 // The general program draws what the one for grids does.
-TEST(VolumeTrace, both_programs_draw_the_same) {
+TEST(VolumeTrace, BothProgramsDrawTheSame) {
   const kernels::View view = view_of_shells(96);
   const VolumeSplats splats = shells(24, false);
   VolumeTraceSettings settings = kExact;
@@ -118,7 +118,7 @@ TEST(VolumeTrace, both_programs_draw_the_same) {
 
 // A draw has the pixel program with the fewest steps that hold its largest contribution: where that fills the
 // sheet to 0.96 all 255, as the next has 181, and where it is less than 0.7 fewer.
-TEST(VolumeTrace, faint_draws_have_steps_of_their_own) {
+TEST(VolumeTrace, FaintDrawsHaveStepsOfTheirOwn) {
   const VolumeTrace recorded = volume_trace(view_of_shells(96), shells(24, false), {});
   std::set<std::string> programs;
   for (const Command& command : recorded.trace.commands) {
@@ -130,14 +130,14 @@ TEST(VolumeTrace, faint_draws_have_steps_of_their_own) {
 }
 
 // What a file holds is what is drawn; it keeps every rule of trace files.
-TEST(VolumeTrace, is_a_trace_file) {
+TEST(VolumeTrace, IsATraceFile) {
   const VolumeTrace recorded = volume_trace(view_of_shells(64), shells(16, true), {});
   EXPECT_NO_THROW(check_trace(recorded.trace, "volume"));
   EXPECT_EQ(recorded.trace.surfaces, 1u);
   EXPECT_GT(recorded.sheets, 10u);
 }
 
-TEST(VolumeTrace, a_volume_out_of_sight_is_a_clear_frame) {
+TEST(VolumeTrace, AVolumeOutOfSightIsAClearFrame) {
   const kernels::View view = kernels::look_at({0, 0, 5}, {0, 0, 10}, {0, 1, 0}, 30, 32, 32, 1, 10);
   const VolumeTrace recorded = volume_trace(view, shells(8, false), {});
   EXPECT_EQ(recorded.splats, 0u);

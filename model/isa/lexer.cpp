@@ -125,7 +125,10 @@ std::string Lexer::found() const {
   if (const auto byte = static_cast<unsigned char>(peek()); byte <= ' ' || byte > '~')
     return fmt::format("the byte 0x{:02x} stands here", byte);
   std::size_t end = position_;
-  const bool number = std::isdigit(static_cast<unsigned char>(peek())) != 0;
+  const auto is_digit = [&](std::size_t at) {
+    return at < text_.size() && std::isdigit(static_cast<unsigned char>(text_[at])) != 0;
+  };
+  const bool number = is_digit(end) || (peek() == '.' && is_digit(end + 1));
   const auto goes_on = [&](std::size_t at) {
     const bool sign = text_[at] == '-' || text_[at] == '+';
     return is_word(text_[at]) || (number && (text_[at] == '.' || (sign && text_[at - 1] == 'e')));

@@ -93,7 +93,7 @@ enum class RegisterFile : std::uint8_t {
 };
 
 // Whose writes name one component, which their tokens do not tell from all four.
-constexpr bool is_scalar(RegisterFile file) {
+constexpr bool is_scalar_output(RegisterFile file) {
   return file == RegisterFile::fog_out || file == RegisterFile::point_size_out;
 }
 

@@ -16,7 +16,7 @@ std::uint32_t register_token(RegisterFile file, std::uint32_t index) {
 
 std::uint32_t token_of(const Destination& destination) {
   std::uint32_t token = register_token(destination.file, destination.index);
-  const bool one = is_scalar(destination.file) && std::has_single_bit(destination.mask);
+  const bool one = is_scalar_output(destination.file) && std::has_single_bit(destination.mask);
   const std::uint32_t mask = one ? 0xfu : destination.mask;
   token |= mask << 16;
   token |= (static_cast<std::uint32_t>(destination.shift) & 0xf) << 24;

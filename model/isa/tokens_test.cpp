@@ -71,7 +71,8 @@ TEST(Tokens, OfAScalarThatReadsOneComponentAreValid) {
     Program program = read_tokens(write_tokens(assemble(std::string(start) + end, "a")), "a");
     EXPECT_NO_THROW(validate(program)) << end;
   }
-  for (const char* end : {"mov oFog, r1\n", "dp3 oFog, r0, v0\n", "mov oFog, r0.x\n"})
+  for (const char* end :
+       {"mov oFog, r1\n", "dp3 oFog, r0, v0\n", "mov oFog, r0.x\n", "mov r1.x, v0.x\nmul oFog, r0, r1\n"})
     EXPECT_THROW(validate(assemble(std::string(start) + end, "a")), UserError) << end;
 }
 

@@ -54,7 +54,8 @@ class VertexValidator {
     if (instruction.coissue) reject(program_, instruction, "vs_1_1 has no co-issue ('+')");
     if (instruction.opcode == Opcode::nop) return;
     check_destination(instruction);
-    for (int i = 0; i < instruction.source_count; ++i) check_source(instruction, i);
+    const Instruction read = as_read(instruction);
+    for (int i = 0; i < read.source_count; ++i) check_source(read, i);
     check_read_ports(program_, instruction, RegisterFile::constant, 1);
     check_read_ports(program_, instruction, RegisterFile::input, 1);
     if (is_scalar(instruction.opcode) && !is_replicated(instruction.sources[0]))
@@ -125,7 +126,7 @@ class VertexValidator {
       case RegisterFile::temporary:
         check_index(instruction, source.file, last, kVertexTemporaries);
         for (int index = source.index; index <= last; ++index)
-          if (!reads_what_is_written(instruction, number, written_[static_cast<std::size_t>(index)]))
+          if (!is_written(instruction, number, index))
             reject(program_, instruction,
                    fmt::format("r{} is read before it is written (all the components read)", index));
         return;
@@ -135,16 +136,26 @@ class VertexValidator {
     }
   }
 
-  // Of what a scalar output may be given, one component has to be there.
-  static bool reads_what_is_written(Instruction instruction, int source, unsigned written) {
-    const auto is_there = [&] { return (components_read(instruction, source) & ~written) == 0; };
+  bool is_written(const Instruction& instruction, int source, int index) const {
+    return (components_read(instruction, source) & ~written_[static_cast<std::size_t>(index)]) == 0;
+  }
+
+  // What is written of an output is what is read for it: of a scalar one component, the first that can be.
+  Instruction as_read(Instruction instruction) const {
     Destination& destination = instruction.destination;
-    if (!is_scalar(destination.file) || destination.mask != 0xf) return is_there();
-    for (const unsigned component : {0x1u, 0x2u, 0x4u, 0x8u}) {
-      destination.mask = static_cast<std::uint8_t>(component);
-      if (is_there()) return true;
+    if (!is_scalar_output(destination.file) || destination.mask != 0xf) return instruction;
+    for (int component = 0; component < 4; ++component) {
+      destination.mask = static_cast<std::uint8_t>(1 << component);
+      bool all = true;
+      for (int i = 0; i < instruction.source_count; ++i) {
+        const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+        if (source.file == RegisterFile::temporary && source.index < kVertexTemporaries)
+          all = all && is_written(instruction, i, source.index);
+      }
+      if (all) return instruction;
     }
-    return false;
+    destination.mask = 0xf;
+    return instruction;
   }
 
   void check_matrix(const Instruction& instruction) const {
@@ -157,7 +168,7 @@ class VertexValidator {
       reject(program_, instruction,
              fmt::format("this macro needs the write mask .{}",
                          std::string_view("xyzw").substr(0, static_cast<std::size_t>(rows))));
-    if (is_scalar(destination.file))
+    if (is_scalar_output(destination.file))
       reject(program_, instruction, "oFog and oPts are scalars, a macro writes several components");
     if (matrix.negate || matrix.swizzle != kIdentity)
       reject(program_, instruction, "the matrix of a macro takes no swizzle and no negation");

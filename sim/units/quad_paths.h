@@ -1,6 +1,5 @@
 #pragma once
 
-#include "sim/kernel/channel.h"
 #include "sim/units/draw_unit.h"
 
 namespace splatscope::sim {

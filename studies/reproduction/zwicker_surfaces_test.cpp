@@ -18,7 +18,7 @@ double mean_opacity(const kernels::LayeredPicture& picture, int left, int top, i
 }
 
 // Closed surfaces are whole inside, and the glass lets the seats and what is behind it through.
-TEST(ZwickerSurfaces, pictures_of_the_stand_ins) {
+TEST(ZwickerSurfaces, PicturesOfTheStandIns) {
   const SurfaceModel head = head_model(20000, 96);
   EXPECT_EQ(head.surfels.size(), 20000u);
   EXPECT_GT(mean_opacity(draw_layered(head, 4), 38, 38, 20), 0.999);
@@ -41,7 +41,7 @@ TEST(ZwickerSurfaces, pictures_of_the_stand_ins) {
   EXPECT_GT(less, 100);  // pixels' worth of what is seen through the glass
 }
 
-TEST(ZwickerSurfaces, table_has_the_papers_models_at_both_sizes) {
+TEST(ZwickerSurfaces, TableHasThePapersModelsAtBothSizes) {
   const std::vector<SurfaceRow> rows = surface_rows(0.01, 1);
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows[0].points, 4291u);

@@ -28,8 +28,8 @@ double turning_cosine(double size) {
 // Of what Eq. 12 and 14 give: for the other vertex programs, whose parallelograms about the same ellipse
 // differ by less, and for rounding.
 constexpr double kReachMargin = 1.5;
-// Of the depths that the machine computes in binary32, of the numbers that it adds up: what lies on a clip
-// plane may lie on either side.
+// What lies on a clip plane may lie on either side: the machine computes depths in binary32. Of the lengths
+// that it adds up, twice at most, eight operations and constants are off by 2^-23 each.
 constexpr double kDepthRounding = 2e-6;
 // An EWA splat whose low-pass filter is longer than this part of its distance, because it is seen nearly
 // edge-on, has no affine map that says where it goes.
@@ -99,7 +99,7 @@ BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View
   const double splat = corner * std::hypot(settings_.sigma * block.greatest_radius, low_pass);
   placed.reach = kReachMargin * std::max(splat, std::numbers::sqrt2 * block.greatest_radius);
   const double from_z = std::acos(std::min(std::abs(axis.z), 1.0)) + block.spread;  // of normals
-  const double terms = glm::length(glm::dvec3(view.object_to_camera[3])) + distance + view.far_plane;
+  const double terms = glm::length(glm::dvec3(view.object_to_camera[3])) + distance;
   placed.depth_reach =
       placed.reach * (from_z < 0.5 * std::numbers::pi ? std::sin(from_z) : 1) + kDepthRounding * terms;
   return placed;

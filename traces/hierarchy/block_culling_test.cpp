@@ -42,6 +42,14 @@ Camera any_camera(std::mt19937& random) {
   return camera;
 }
 
+// Orthonormal.
+glm::dmat3 any_axes(std::mt19937& random) {
+  std::normal_distribution<double> any;
+  const glm::dvec3 z = glm::normalize(glm::dvec3(any(random), any(random), any(random)));
+  const glm::dvec3 x = glm::normalize(glm::cross(z, glm::dvec3(any(random), any(random), any(random))));
+  return {x, glm::cross(z, x), z};
+}
+
 // Of a part of such a model: much of it is outside, and much of it faces away.
 Camera close_up() {
   Camera camera;
@@ -59,11 +67,12 @@ struct Drawn {
   BlockCounts blocks;
 };
 
-Drawn drawn(Scene scene, const CapturedWeights& weights, Culling culling) {
+Drawn drawn(Scene scene, const CapturedWeights& weights, Culling culling, const NumberFormats& formats = {}) {
   scene.hierarchy.culling = culling;
   const bool per_pixel = scene.splatting.algorithm == Algorithm::ewa_per_pixel;
   const Recording recording = per_pixel ? record(scene, NumberFormats{}) : record(scene, weights);
   RenderOptions options;
+  options.formats = formats;
   options.record = Record::nothing;
   return {render(recording.trace, options).frame, recording.counts.blocks};
 }
@@ -98,28 +107,36 @@ TEST(BlockCulling, NeverChangesThePicture) {
     expect_same_pictures(generator, "EWA", [](Scene&) {});
 }
 
-// Walls that face the eye from exactly where the far plane is, or the near one.
+// Walls that face the eye from exactly where the far plane is, or the near one, seen from anywhere.
 TEST(BlockCulling, NeverChangesThePictureOfAWallOnAClipPlane) {
   Scene scene = small_model("sphere");
   scene.splatting.algorithm = Algorithm::no_ewa;
   scene.surfels.resize(9);
-  for (std::size_t i = 0; i < 9; ++i) {
-    scene.surfels[i].position = {0.1f * static_cast<float>(i % 3), 0.1f * static_cast<float>(i / 3), 0.1f};
-    scene.surfels[i].normal = {0, 0, -1};
-    scene.surfels[i].radius = 0.1f;
-  }
   scene.camera = close_up();
   scene.camera.fov_y_degrees = 30;
   const CapturedWeights weights = uniform_weights(scene.surfels.size(), scene.splatting.gamma);
+  NumberFormats nv20;
+  nv20.vertex_arithmetic = Arithmetic::nv20;
+  std::mt19937 random(random_seed());
   for (int tenths = 1; tenths <= 60; ++tenths) {
-    scene.camera.eye = {0, 0, -tenths / 10.0};
-    scene.camera.target = {0, 0, 0.1};
+    const glm::dmat3 axes = tenths % 2 == 0 ? glm::dmat3(1) : any_axes(random);
+    for (std::size_t i = 0; i < 9; ++i) {
+      const auto across = static_cast<double>(i % 3), up = static_cast<double>(i / 3);
+      scene.surfels[i].position = axes * glm::dvec3(0.1 * across, 0.1 * up, 0.1);
+      scene.surfels[i].normal = -axes[2];
+      scene.surfels[i].radius = 0.1f;
+    }
+    scene.camera.eye = axes * glm::dvec3(0, 0, -tenths / 10.0);
+    scene.camera.target = axes * glm::dvec3(0, 0, 0.1);
+    scene.camera.up = axes[1];
     const double wall = (tenths + 1) / 10.0;
     for (const bool at_far : {true, false}) {
       scene.camera.near = at_far ? wall / 10 : wall;
       scene.camera.far = at_far ? wall : 10 * wall;
-      ASSERT_EQ(drawn(scene, weights, Culling::off).frame, drawn(scene, weights, Culling::blocks).frame)
-          << wall << (at_far ? " at the far plane" : " at the near plane");
+      for (const NumberFormats& formats : {NumberFormats{}, nv20})
+        ASSERT_EQ(drawn(scene, weights, Culling::off, formats).frame,
+                  drawn(scene, weights, Culling::blocks, formats).frame)
+            << wall << (at_far ? " at the far plane" : " at the near plane");
     }
   }
 }

@@ -17,7 +17,7 @@ namespace {
 
 bool may_be_marked(const std::filesystem::path& file) {
   const std::string ending = ending_of(file);
-  return ending == ".obj" || ending == ".mtl" || ending == ".ply";
+  return ending == ".obj" || ending == ".mtl";
 }
 
 // A file from behind its byte order mark on.
@@ -62,13 +62,13 @@ std::string ending_of(const std::filesystem::path& path) {
 }
 
 std::filesystem::path file_named(std::string name, const std::filesystem::path& folder) {
-  name.erase(name.find_last_not_of(" \t") + 1);
   std::ranges::replace(name, '\\', '/');
-  std::filesystem::path as_it_stands = folder / name, decoded = folder / percent_decoded(name);
+  std::filesystem::path as_it_stands = folder / name;
   std::error_code error;
-  const bool is_uri =
-      !std::filesystem::exists(as_it_stands, error) && std::filesystem::exists(decoded, error);
-  return is_uri ? decoded : as_it_stands;
+  if (std::filesystem::exists(as_it_stands, error)) return as_it_stands;
+  for (const std::string& other : {name.substr(0, name.find_last_not_of(" \t") + 1), percent_decoded(name)})
+    if (!other.empty() && std::filesystem::exists(folder / other, error)) return folder / other;
+  return as_it_stands;
 }
 
 Assimp::IOStream* AssimpFiles::Open(const char* name, const char* mode) {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <glm/vec3.hpp>
@@ -136,6 +138,48 @@ TEST_F(PlyText, CommentsMayStandBeforeTheFormat) {
                                     "element face 7\n{}end_header\n{}{}",
                                     kVertex, kFace, kParts[0].ascii, kParts[1].ascii)),
                 "comments");
+}
+
+// assimp reads on behind a comment, or what else it does not know in a header, as if there were none before.
+TEST_F(PlyText, CommentsMayStandAnywhereInTheHeader) {
+  std::vector<std::string> lines;
+  for (const std::string_view part : {kVertex, kFace})
+    for (std::size_t at = 0, end; (end = part.find('\n', at)) != part.npos; at = end + 1)
+      lines.emplace_back(part.substr(at, end + 1 - at));
+  for (const std::string_view comment : {"comment c\n", "obj_info 1\n", "comment TextureFile a.png\n", "\n"})
+    for (std::size_t before = 0; before <= lines.size(); ++before) {
+      std::string text = "end_header\n";
+      for (std::size_t i = lines.size() + 1; i-- > 0;)
+        text = (i == before ? std::string(comment) : "") + (i < lines.size() ? lines[i] : "") + text;
+      const std::string name = fmt::format("{} before line {}", comment, before);
+      expect_square(mesh_of("ply\nformat ascii 1.0\n" + text + std::string(kParts[0].ascii) +
+                            std::string(kParts[1].ascii)),
+                    name);
+      expect_square(mesh_of("ply\nformat binary_little_endian 1.0\n" + text + binary_data(0, false) +
+                            binary_data(1, false)),
+                    name + ", binary");
+    }
+}
+
+TEST_F(PlyText, ElementsMayHaveNoPropertiesAndFacesComeFirst) {
+  expect_square(
+      mesh_of(fmt::format("ply\nformat ascii 1.0\nelement edge 2\nelement material 3\n{}{}end_header\n{}{}",
+                          kFace, kVertex, kParts[1].ascii, kParts[0].ascii)),
+      "faces first");
+}
+
+TEST_F(PlyText, NumbersAreOfTheTypesOfTheHeader) {
+  const auto with = [&](std::string_view x, std::string_view index) {
+    return fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty float y\nproperty float "
+        "z\n{}end_header\n0 0 0\n{} 0 0\n0\r1 0\n3 0 1 {}\n3 0 2 1\n",
+        kFace, x, index);
+  };
+  EXPECT_EQ(mesh_of(with("-1", "+2")).triangles.size(), 2u);
+  EXPECT_EQ(error_of(with("1.5", "2")), "m.ply:11: \"1.5\" is no whole number, expected a value of type int");
+  EXPECT_EQ(error_of(with("1", "2.0")), "m.ply:13: \"2.0\" is no whole number, expected a value of type int");
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nformat binary_little_endian 1.0\nend_header\n"),
+            "m.ply:3: a second line \"format\", expected one");
 }
 
 TEST_F(PlyText, HalfAGroupIsRefused) {

@@ -27,8 +27,8 @@ bool AgpBus::serve(Cycle now, const Client& client) {
   return true;
 }
 
-// Latencies overlap, so the bus that only waits for one could take more: it is starved. Busy is what limits:
-// data on the lines, and as many requests on the way as there may be.
+// Latencies overlap, so a bus that only waits for one could take more: it is starved. Data on the lines, or
+// as many requests on the way as there may be, keep it busy.
 Step AgpBus::waiting(Cycle now) const {
   Cycle next = kNever;
   if (!is_full())
@@ -46,7 +46,7 @@ Step AgpBus::advance(Cycle now) {
     const std::size_t client = (turn_ + i) % clients_.size();
     if (!serve(now, clients_[client])) continue;
     turn_ = (client + 1) % clients_.size();
-    break;
+    return busy(now + 1);
   }
   return waiting(now);
 }

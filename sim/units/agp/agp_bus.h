@@ -24,6 +24,9 @@ class AgpBus final : public Unit {
     MemoryPort* port;
     Channel<MemoryRequest>* requests;
   };
+  struct Transfer {
+    Cycle start, end;  // of a request's data
+  };
   bool serve(Cycle now, const Client& client);
   bool is_full() const { return on_the_way_.size() == static_cast<std::size_t>(spec_.queue); }
   Step waiting(Cycle now) const;
@@ -33,9 +36,6 @@ class AgpBus final : public Unit {
   std::vector<Client> clients_;
   std::size_t turn_ = 0;
   Cycle data_free_ = 0;
-  struct Transfer {
-    Cycle start, end;  // of its data
-  };
   std::deque<Transfer> on_the_way_;
   std::uint64_t reads_ = 0;
   DataClocks data_clocks_;
