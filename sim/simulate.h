@@ -67,8 +67,8 @@ struct Result {
   };
   // The unit that was busy for the largest share of the run. Vertex units, of which the first that is free
   // takes a vertex, count together, as busy as the least busy of them, under the name of the busiest. A
-  // memory channel or AGP is busy also while the latency of a request passes: at 90 % its data bus may be
-  // half empty (`data_clocks`).
+  // memory channel is busy also while it waits for its DRAM, and AGP while as many requests are on the way as
+  // may be: at 90 % their data buses may be half empty (`data_clocks`).
   Bottleneck bottleneck() const;
   // 0 where they take no time.
   double frames_per_second() const { return rate(static_cast<double>(frame_cycles.size()), seconds); }

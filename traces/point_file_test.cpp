@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
 
 #include "model/error.h"
+#include "model/testing/append_bytes.h"
 #include "model/testing/random_seed.h"
 #include "model/testing/scratch_folder.h"
 #include "traces/output_files.h"
@@ -37,14 +37,6 @@ class PointFileTest : public testing::Test {
   fs::path ply_ = folder_ / "p.ply";
 };
 
-template <class Value>
-void append(std::string& bytes, Value value, bool big_endian) {
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  if (big_endian) std::reverse(raw, raw + sizeof value);
-  bytes.append(raw, sizeof value);
-}
-
 // Properties out of order, unknown ones and lists between them, another element before.
 std::string binary_file(bool big_endian) {
   std::string bytes = fmt::format(
@@ -56,20 +48,20 @@ std::string binary_file(bool big_endian) {
       "property short nx\nproperty float radius\nend_header\n",
       big_endian ? "big" : "little");
   for (int items : {2, 0}) {
-    append(bytes, static_cast<std::uint8_t>(items), big_endian);
-    for (int i = 0; i < items; ++i) append(bytes, std::int16_t{-5}, big_endian);
+    append_bytes(bytes, static_cast<std::uint8_t>(items), big_endian);
+    for (int i = 0; i < items; ++i) append_bytes(bytes, std::int16_t{-5}, big_endian);
   }
   for (int i = 0; i < 2; ++i) {
-    append(bytes, 3.5 + i, big_endian);
-    for (int c : {0, 255, 51}) append(bytes, static_cast<std::uint8_t>(c), big_endian);
-    append(bytes, std::uint16_t{1}, big_endian);
-    append(bytes, std::int32_t{77}, big_endian);
-    append(bytes, 1.25f, big_endian);
-    append(bytes, -2.0f, big_endian);
-    append(bytes, 0.0f, big_endian);
-    append(bytes, 0.5f, big_endian);
-    append(bytes, std::int16_t{-1}, big_endian);
-    append(bytes, 0.75f, big_endian);
+    append_bytes(bytes, 3.5 + i, big_endian);
+    for (int c : {0, 255, 51}) append_bytes(bytes, static_cast<std::uint8_t>(c), big_endian);
+    append_bytes(bytes, std::uint16_t{1}, big_endian);
+    append_bytes(bytes, std::int32_t{77}, big_endian);
+    append_bytes(bytes, 1.25f, big_endian);
+    append_bytes(bytes, -2.0f, big_endian);
+    append_bytes(bytes, 0.0f, big_endian);
+    append_bytes(bytes, 0.5f, big_endian);
+    append_bytes(bytes, std::int16_t{-1}, big_endian);
+    append_bytes(bytes, 0.75f, big_endian);
   }
   return bytes;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
-#include <fstream>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -13,19 +12,12 @@
 #include "model/byte_order_mark.h"
 #include "model/error.h"
 #include "model/stop.h"
+#include "traces/models/file_bytes.h"
 
 namespace splatscope::traces {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\f\v";
-
-std::string text_of(const std::filesystem::path& path) {
-  std::string text(std::filesystem::file_size(path), '\0');
-  std::ifstream in(path, std::ios::binary);
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
 
 bool is_number(std::string_view word) {
   double value = 0;
@@ -121,7 +113,7 @@ class ObjText {
 }  // namespace
 
 std::string obj_text(const std::filesystem::path& path) {
-  const std::string text = text_of(path), file = path.string();
+  const std::string text = file_bytes(path), file = path.string();
   return ObjText(text, file).read();
 }
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "model/stop.h"
+#include "traces/models/file_bytes.h"
 #include "traces/ply_header.h"
 #include "traces/ply_values.h"
 
@@ -57,19 +57,11 @@ void append_rows(std::string_view data, std::string& text) {
   }
 }
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::string bytes(std::filesystem::file_size(path), '\0');
-  std::ifstream in(path, std::ios::binary);
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
 }  // namespace
 
 std::string ply_text(const std::filesystem::path& path) {
   const std::string file = path.string();
-  std::istringstream in(bytes_of(path), std::ios::binary);
+  std::istringstream in(file_bytes(path), std::ios::binary);
   const PlyHeader header = read_ply_header(in, file);
   const auto values = ply_values(in, file, in.view().size(), header, PlyTypes::enforced);
   const auto offset = [&] {

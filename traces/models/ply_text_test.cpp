@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <glm/vec3.hpp>
 
+#include "model/testing/append_bytes.h"
 #include "model/testing/scratch_folder.h"
 #include "traces/models/mesh_file.h"
 
@@ -51,18 +51,10 @@ constexpr Part kParts[] = {{kVertex, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"},
                            {kFace, "3 0 1 2\n3 0 2 3\n"},
                            {kCamera, "0.5 2 7 8\n0.25 0\n"}};
 
-template <typename Value>
-void append(std::string& bytes, Value value, bool big_endian) {
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  if (big_endian) std::reverse(raw, raw + sizeof value);
-  bytes.append(raw, sizeof value);
-}
-
 // The data of kParts[part], the first x by its bits.
 std::string binary_data(int part, bool big_endian, std::uint32_t first_x = 0) {
   std::string bytes;
-  const auto put = [&](auto value) { append(bytes, value, big_endian); };
+  const auto put = [&](auto value) { append_bytes(bytes, value, big_endian); };
   const auto list = [&](std::initializer_list<std::int32_t> items) {
     put(static_cast<std::uint8_t>(items.size()));
     for (const std::int32_t item : items) put(item);
