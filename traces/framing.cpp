@@ -4,10 +4,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <limits>
 #include <numbers>
 
 #include "kernels/bounds.h"
+#include "traces/splat_reach.h"
 
 namespace splatscope::traces {
 namespace {
@@ -16,6 +16,9 @@ constexpr glm::dvec3 kFrom{0.55, 0.4, 1};  // direction from the target to the e
 constexpr double kFieldOfView = 30;        // degrees
 constexpr double kFilled = 0.95;           // of half the frame's width or height
 constexpr double kClosest = 1e-3;          // near plane, in units of the far plane's distance
+// Of the depths' range, on either side: blocks of surfels are culled by their cones where boxes about them,
+// which reach further than the surfels do, are within the planes.
+constexpr double kRoom = 0.1;
 
 // Axes of a camera: right, up, ahead.
 struct Axes {
@@ -47,12 +50,8 @@ double fitting_distance(std::span<const Surfel> surfels, const Axes& axes, const
 
 }  // namespace
 
-double corner_reach(const Splatting& splatting) {
-  return std::max(std::numbers::sqrt2, 2 * splatting.sigma * std::sqrt(splatting.cutoff));
-}
-
-void frame_camera(std::span<const Surfel> surfels, double reach, const FrameSize& frame,
-                  const CameraKeys& given, Camera& camera) {
+void frame_camera(std::span<const Surfel> surfels, const FrameSize& frame, const CameraKeys& given,
+                  Camera& camera) {
   if (surfels.empty()) return;
   if (!given.up) camera.up = {0, 1, 0};
   if (!given.fov_y_degrees) camera.fov_y_degrees = kFieldOfView;
@@ -71,17 +70,41 @@ void frame_camera(std::span<const Surfel> surfels, double reach, const FrameSize
         fitting_distance(surfels, axes, camera.target, {tangent * frame.width / frame.height, tangent});
     camera.eye = camera.target - (distance > 0 ? distance : 1) * axes.ahead;
   }
-  if (glm::length(camera.target - camera.eye) == 0) return;  // refused later
-  const Axes axes(camera.target - camera.eye, camera.up);
-  double nearest = std::numeric_limits<double>::infinity(), furthest = 0;
+}
+
+glm::dvec3 ahead_of(const Camera& camera) {
+  const glm::dvec3 view = camera.target - camera.eye;
+  const double length = glm::length(view);
+  return length > 0 ? view / length : view;
+}
+
+DepthRange depths_of(std::span<const Surfel> surfels, const Splatting& splatting, const FrameSize& frame,
+                     const Camera& camera) {
+  const glm::dvec3 ahead = ahead_of(camera);
+  const double eta = 0.5 * frame.height / std::tan(camera.fov_y_degrees * std::numbers::pi / 360);
+  DepthRange range;
   for (const Surfel& s : surfels) {
-    const double depth = axes.of(glm::dvec3(s.position) - camera.eye).z;
-    const double corner = std::max(2.0, reach) * s.radius;
-    nearest = std::min(nearest, depth - corner);
-    furthest = std::max(furthest, depth + corner);
+    const glm::dvec3 ray = glm::dvec3(s.position) - camera.eye;
+    const double depth = glm::dot(ray, ahead);
+    const double corner = std::max(2.0, corner_reach(splatting)) * s.radius;
+    double reach = corner;
+    if (depth > 0) {
+      const glm::dvec3 normal(s.normal);
+      const double cosine = std::max(kEdgeOnCosine, std::abs(glm::dot(normal, ray)) / glm::length(ray));
+      const double filter = std::min(depth / (eta * cosine), longest_filter(splatting, depth));
+      const double along = glm::dot(normal, ahead);
+      reach = quad_reach(splatting, s.radius, filter) * std::sqrt(std::max(0.0, 1 - along * along));
+    }
+    range.add(depth, std::max(corner, reach));
   }
-  if (!given.far) camera.far = furthest > 0 ? furthest : 1;  // 0: all of them behind the eye
-  if (!given.near) camera.near = std::max(nearest, kClosest * camera.far);
+  range.furthest += splatting.depth_offset;
+  const double room = kRoom * (range.furthest - range.nearest);
+  return {range.nearest - room, range.furthest + room};
+}
+
+void place_planes(const DepthRange& depths, const CameraKeys& given, Camera& camera) {
+  if (!given.far) camera.far = depths.furthest > 0 ? depths.furthest : 1;  // 0: all of it behind the eye
+  if (!given.near) camera.near = std::max(depths.nearest, kClosest * camera.far);
 }
 
 }  // namespace splatscope::traces

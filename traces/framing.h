@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <glm/vec3.hpp>
+#include <limits>
 #include <span>
 
 #include "traces/scene.h"
@@ -11,15 +14,32 @@ struct CameraKeys {
   bool eye = false, target = false, up = false, fov_y_degrees = false, near = false, far = false;
 };
 
-// How far the corners of a splat's quads, of either pass, are from its centre before the low-pass filter, in
-// radii of its surfel.
-double corner_reach(const Splatting& splatting);
+// Turns a camera to all the surfels: a three-quarter view from above their front (+z, +y up) that they fill
+// to the edge of the frame less a small margin. A key that is given stays. Positions must be finite; without
+// surfels the camera stays as it is.
+void frame_camera(std::span<const Surfel> surfels, const FrameSize& frame, const CameraKeys& given,
+                  Camera& camera);
 
-// Completes a camera so that it sees all the surfels: a three-quarter view from above their front (+z, +y up)
-// that they fill to the edge of the frame less a small margin, with the clip planes as close to their splats
-// (`reach` radii, 2 at the least) as they may be, for the sake of the depth's precision. A key that is given
-// stays. Positions must be finite; without surfels the camera stays as it is.
-void frame_camera(std::span<const Surfel> surfels, double reach, const FrameSize& frame,
-                  const CameraKeys& given, Camera& camera);
+// The camera's axis, of unit length; zero where the target is the eye, which is refused later.
+glm::dvec3 ahead_of(const Camera& camera);
+
+// Along the camera's axis, from the eye: negative behind it.
+struct DepthRange {
+  double nearest = std::numeric_limits<double>::infinity();
+  double furthest = -std::numeric_limits<double>::infinity();
+  void add(double depth, double reach) {
+    nearest = std::min(nearest, depth - reach);
+    furthest = std::max(furthest, depth + reach);
+  }
+};
+
+// Of the quads of both passes, moved by z_t, but for those seen edge-on (splat_reach.h), with 2 radii at the
+// least from each surfel and a tenth of the range on either side. Normals are of unit length.
+DepthRange depths_of(std::span<const Surfel> surfels, const Splatting& splatting, const FrameSize& frame,
+                     const Camera& camera);
+
+// Clip planes as close to what is seen as they may be, for the sake of the depth's precision: the near one
+// at a thousandth of the far one's distance at the least. A key that is given stays.
+void place_planes(const DepthRange& depths, const CameraKeys& given, Camera& camera);
 
 }  // namespace splatscope::traces

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "traces/scene.h"
+#include "traces/splat_reach.h"
 #include "traces/splat_trace.h"
 
 namespace splatscope::traces {
@@ -37,7 +38,8 @@ RC_GTEST_PROP(Framing, EverySurfelIsSeenAndTheFrameIsFilled, ()) {
   const std::vector<Surfel> surfels = any_surfels();
   const FrameSize frame{*rc::gen::element(100, 400), *rc::gen::element(100, 300)};
   Camera camera;
-  frame_camera(surfels, 2, frame, {}, camera);
+  frame_camera(surfels, frame, {}, camera);
+  place_planes(depths_of(surfels, Splatting{.cutoff = 1, .sigma = 1}, frame, camera), {}, camera);
   RC_ASSERT(camera.near > 0 && camera.near < camera.far);
   const kernels::View view = view_of(camera, frame);
   double furthest = 0;
@@ -61,7 +63,7 @@ TEST(Framing, WhatIsGivenStays) {
   EXPECT_EQ(scene.camera.eye, glm::dvec3(0, 0, 9));
   EXPECT_EQ(scene.camera.far, 50);
   EXPECT_NEAR(scene.camera.target.x, 0, 0.2) << "the middle of the surfels";
-  EXPECT_GT(scene.camera.near, 7);
+  EXPECT_GT(scene.camera.near, 6.5);
   EXPECT_LT(scene.camera.near, 8.2) << "just before them";
 }
 
@@ -107,14 +109,59 @@ TEST(Framing, CornersOfASplatLieWhereItsDomainEnds) {
   EXPECT_NEAR(corner_reach(splatting) * surfel.radius, std::numbers::sqrt2 * half_side, 1e-12);
 }
 
-// Quads of the first pass reach sqrt 2 radii, and more room is left than that: 2.
+Splatting splatting_of(double depth_offset = 0) {
+  Splatting splatting;
+  splatting.cutoff = splatting.sigma = 1;
+  splatting.depth_offset = depth_offset;
+  return splatting;
+}
+
+// Of a surfel 8 units before an eye at the origin that looks along z, with an eta of half a side.
+DepthRange depths_of_one(const glm::vec3& normal, float radius, const Splatting& splatting, int side = 64) {
+  Camera camera;
+  camera.target = {0, 0, 1};
+  camera.fov_y_degrees = 90;
+  const std::vector<Surfel> one{{{0, 0, 8}, normal, radius, {}}};
+  return depths_of(one, splatting, {side, side}, camera);
+}
+
+// Two standard deviations to a corner, half as much again for other programs, a hundredth for rounding: a
+// pixel is 8 / 32 there, and on a surfel that is seen at a cosine of 0.6 longer by 1 / 0.6, of which 0.8 lie
+// along z.
+TEST(Framing, ThePlanesHoldTheLowPassFilter) {
+  const DepthRange depths = depths_of_one({0.8f, 0, -0.6f}, 0.3f, splatting_of());
+  const double reach = 1.5 * 2 * std::hypot(0.3, 0.25 / 0.6) * 0.8;
+  EXPECT_NEAR(depths.nearest, 8 - 1.2 * reach, 1e-6);
+  EXPECT_NEAR(depths.furthest, 8 + 1.2 * reach, 1e-6);
+}
+
+// Seen edge-on a filter has no end: it counts as if it were seen at a cosine of 0.15, and its corners as no
+// further than a quarter of the distance.
+TEST(Framing, ThePlanesOfWhatIsSeenEdgeOnAreNotWithoutEnd) {
+  for (const auto& [side, filter] : {std::pair(256, 8 / (128 * 0.15)), {64, 0.25 * 8 / 2}}) {
+    const DepthRange depths = depths_of_one({1, 0, 0}, 0.3f, splatting_of(), side);
+    const double reach = 1.5 * 2 * std::hypot(0.3, filter);
+    EXPECT_NEAR(depths.nearest, 8 - 1.2 * reach, 1e-6) << side;
+    EXPECT_NEAR(depths.furthest, 8 + 1.2 * reach, 1e-6) << side;
+  }
+}
+
+// The visibility pass moves its quads away from the eye.
+TEST(Framing, TheFarPlaneHoldsTheDepthOffset) {
+  const DepthRange depths = depths_of_one({0, 0, -1}, 0.5f, splatting_of(3));
+  EXPECT_DOUBLE_EQ(depths.nearest, 7 - 0.5);
+  EXPECT_DOUBLE_EQ(depths.furthest, 12 + 0.5);
+}
+
+// Quads of the first pass reach sqrt 2 radii, and more room is left than that: 2, and a tenth of the range.
 TEST(Framing, ThePlanesAreTwoRadiiFromSmallSplats) {
   Camera camera;
   camera.eye = {0, 0, -9};
   const std::vector<Surfel> one{{{0, 0, 0}, {0, 0, -1}, 0.5f, {}}};
-  frame_camera(one, 1, {64, 64}, {.eye = true}, camera);
-  EXPECT_DOUBLE_EQ(camera.near, 8);
-  EXPECT_DOUBLE_EQ(camera.far, 10);
+  frame_camera(one, {64, 64}, {.eye = true}, camera);
+  place_planes(depths_of(one, splatting_of(), {64, 64}, camera), {}, camera);
+  EXPECT_DOUBLE_EQ(camera.near, 8 - 0.2);
+  EXPECT_DOUBLE_EQ(camera.far, 10 + 0.2);
 }
 
 // With surfels on both sides of the eye the near plane is at a thousandth of the far one's distance.
@@ -122,9 +169,10 @@ TEST(Framing, ThePlanesOfAnEyeInsideAreNotTooFarApart) {
   Camera camera;
   camera.target = {0, 0, 1};
   const std::vector<Surfel> around{{{0, 0, -5}, {0, 0, 1}, 0.5f, {}}, {{0, 0, 9}, {0, 0, -1}, 0.5f, {}}};
-  frame_camera(around, 1, {64, 64}, {.eye = true, .target = true}, camera);
-  EXPECT_DOUBLE_EQ(camera.far, 10);
-  EXPECT_DOUBLE_EQ(camera.near, 0.01);
+  frame_camera(around, {64, 64}, {.eye = true, .target = true}, camera);
+  place_planes(depths_of(around, splatting_of(), {64, 64}, camera), {}, camera);
+  EXPECT_DOUBLE_EQ(camera.far, 10 + 1.6);
+  EXPECT_DOUBLE_EQ(camera.near, 0.0116);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "model/error.h"
+#include "traces/framing.h"
 #include "traces/gamma.h"
 #include "traces/models/mesh_file.h"
 #include "traces/scene_settings.h"
@@ -48,9 +49,13 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   scene.estimated = surfels.estimated;
   scene.mesh = surfels.mesh;
   scene.files.insert(scene.files.end(), surfels.files.begin(), surfels.files.end());
-  scene.camera = settings.camera = surfels.camera;
-  check_camera(settings, file.string());
   scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : surfels.average_spacing;
+  settings.camera = surfels.camera;
+  if (!plane && !scene.surfels.empty())
+    place_planes(depths_of(scene.surfels, scene.splatting, scene.frame, settings.camera),
+                 settings.camera_given, settings.camera);
+  check_camera(settings, file.string());
+  scene.camera = settings.camera;
   if (!(scene.splatting.gamma > 0)) scene.splatting.gamma = suitable_gamma(scene.surfels, scene.splatting);
   return scene;
 }

@@ -291,10 +291,8 @@ TEST(Scene, APlaneIsNotBeyondWhatIsSeen) {
   EXPECT_EQ(error("\nnear = 60\n").find("s.toml:6: camera.near is 60, but what is to be seen ends "), 0u)
       << error("near = 60\n");
   EXPECT_EQ(error("far = 0.01\n").find("s.toml:5: camera.far is 0.01, but what is to be seen begins "), 0u);
-  EXPECT_EQ(
-      error("eye = [1e30, 0, 0]\ntarget = [-1e30, 0, 0]\n"),
-      "s.toml:5: seen from camera.eye [1e+30, 0, 0] toward camera.target [-1e+30, 0, 0] all has the same "
-      "depth in binary64, expected an eye nearer to what is to be seen");
+  // All of one depth in binary64, but a pixel is wide there, and planes are as far apart as its filter.
+  EXPECT_EQ(error("eye = [1e30, 0, 0]\ntarget = [-1e30, 0, 0]\n"), "no error");
 }
 
 TEST(Scene, CaptureBoxIsTheRightWayRound) {

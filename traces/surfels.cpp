@@ -88,8 +88,7 @@ Surfels complete(PointFile points, const SceneSettings& settings) {
     estimate_radii(surfels, settings.surfels.neighbours);
     leave_out_zero_radii();
   }
-  frame_camera(surfels, corner_reach(settings.splatting), {settings.width, settings.height},
-               settings.camera_given, result.camera);
+  frame_camera(surfels, {settings.width, settings.height}, settings.camera_given, result.camera);
   if (!points.has_normals) {
     estimate_normals(surfels, settings.surfels.neighbours, result.camera.eye);
     leave_out_zero_normals();

@@ -16,8 +16,8 @@
 #include "model/render.h"
 #include "model/stop.h"
 #include "traces/edges.h"
-#include "traces/framing.h"
 #include "traces/median.h"
+#include "traces/splat_reach.h"
 
 namespace splatscope::traces {
 namespace {

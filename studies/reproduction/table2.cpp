@@ -52,7 +52,7 @@ void add_to(Findings& findings, const std::vector<Table2Row>& table) {
   for (const Table2Row& row : table) {
     rows.push_back({row.model, fmt::format("{}", row.points), fmt::format("{}", row.drawn),
                     fmt::format("{}", row.resolution), row.machine, fmt::format("{:.1f}", row.published_fps),
-                    fmt::format("{:.2f}", row.simulated.fps), fmt::format("{:+.1f} %", 100 * row.error()),
+                    fmt::format("{:.3f}", row.simulated.fps), fmt::format("{:+.1f} %", 100 * row.error()),
                     text_of_bottleneck(row.simulated)});
   }
   findings.table(

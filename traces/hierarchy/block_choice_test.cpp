@@ -120,9 +120,8 @@ TEST(BlockChoice, WhatIsFarIsDrawnCoarsely) {
   std::size_t last = all + 1;
   for (const double distance : {0.2, 4.0, 16.0, 64.0}) {
     scene.camera.eye = scene.camera.target + distance * ray;
-    frame_camera(scene.surfels, corner_reach(scene.splatting), scene.frame,
-                 {.eye = true, .target = true, .up = true, .fov_y_degrees = true},
-                 scene.camera);  // clip planes close to the surfels: they cut boxes
+    // Close to the surfels: they cut boxes.
+    place_planes(depths_of(scene.surfels, scene.splatting, scene.frame, scene.camera), {}, scene.camera);
     const Choice choice = choose(scene);
     const std::size_t drawn = choice.frames.front().counts.surfels;
     EXPECT_LT(drawn, last) << distance;

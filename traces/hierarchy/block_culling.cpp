@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "model/primitive/primitive.h"
+#include "traces/splat_reach.h"
 
 namespace splatscope::traces {
 namespace {
@@ -17,23 +18,16 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 // pixels long when it faces the eye has twice a triangle's area size^2 cos. Rounding moves each corner by
 // 1/32 at most in x and y, the area by that times the sum of the edges in the taxicab norm, 4 size, and by
 // 6/32^2: only beyond this cosine the quad cannot turn round. 0.01 is for the rounding of the vertex
-// programs. No less than kCosine, which is enough for quads of 0.95 pixels: from there on the same blocks
-// whatever the size of the frame, so that frame rates by resolution compare pixels.
+// programs. No less than kEdgeOnCosine, which is enough for quads of 0.95 pixels: from there on the same
+// blocks whatever the size of the frame, so that frame rates by resolution compare pixels (Table 2).
 double turning_cosine(double size) {
   constexpr double kStep = 1.0 / 32;
-  constexpr double kCosine = 0.15;
-  return std::max(kCosine, 0.01 + (4 * kStep + 6 * kStep * kStep / size) / size);
+  return std::max(kEdgeOnCosine, 0.01 + (4 * kStep + 6 * kStep * kStep / size) / size);
 }
 
-// Of what Eq. 12 and 14 give: for the other vertex programs, whose parallelograms about the same ellipse
-// differ by less, and for rounding.
-constexpr double kReachMargin = 1.5;
 // What lies on a clip plane may lie on either side: the machine computes depths in binary32. Of the lengths
 // that it adds up, twice at most, eight operations and constants are off by 2^-23 each.
 constexpr double kDepthRounding = 2e-6;
-// An EWA splat whose low-pass filter is longer than this part of its distance, because it is seen nearly
-// edge-on, has no affine map that says where it goes.
-constexpr double kLongest = 0.25;
 
 }  // namespace
 
@@ -59,7 +53,7 @@ BlockCulling::BlockCulling(const kernels::View& view, const Splatting& settings)
             glm::normalize(glm::dvec3(0, view.eta, -h)), glm::normalize(glm::dvec3(0, -view.eta, -h))};
 }
 
-BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View& view) const {
+BlockCulling::Placed BlockCulling::place(const Block& block, double away, const kernels::View& view) const {
   Placed placed;
   double distance = 0;  // largest
   for (std::size_t i = 0; i < placed.corners.size(); ++i) {
@@ -84,20 +78,17 @@ BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View
     const double angle = std::acos(std::clamp(sign * glm::dot(axis, ray) / length, -1.0, 1.0)) + block.spread;
     return angle < 0.5 * std::numbers::pi ? std::cos(angle) * std::min(1.0, length / distance) : -1.0;
   };
-  placed.away = least_cosine(block.behind, 1);
+  placed.away = std::max(away, least_cosine(block.behind, 1));
   placed.toward = least_cosine(block.before, -1);
 
-  // Largest axis of the splat, by the least singular value of J (Ren 2002, section 5.2), which is at least
-  // eta/z cos; the programs hold z at the near plane behind it.
+  // The programs hold z at the near plane behind it.
   const double cosine = std::max(placed.away, placed.toward);
   if (!(cosine > 0) || (placed.nearest < view.near_plane && placed.furthest > -view.near_plane))
     return placed;
   const double z = std::max(placed.furthest, view.near_plane);
-  const double low_pass = z / (view.eta * cosine);
-  const double corner = 2 * std::sqrt(settings_.cutoff);  // sqrt 2 of the quad's half side, sqrt(2c)
-  if (corner * low_pass > kLongest * z) return placed;
-  const double splat = corner * std::hypot(settings_.sigma * block.greatest_radius, low_pass);
-  placed.reach = kReachMargin * std::max(splat, std::numbers::sqrt2 * block.greatest_radius);
+  const double filter = z / (view.eta * cosine);
+  if (filter > longest_filter(settings_, z)) return placed;
+  placed.reach = quad_reach(settings_, block.greatest_radius, filter);
   const double from_z = std::acos(std::min(std::abs(axis.z), 1.0)) + block.spread;  // of normals
   const double terms = glm::length(glm::dvec3(view.object_to_camera[3])) + distance;
   placed.depth_reach =
@@ -106,17 +97,18 @@ BlockCulling::Placed BlockCulling::place(const Block& block, const kernels::View
 }
 
 // Culled where no pass can show it.
-BlockFate BlockCulling::fate(const Block& block) const {
-  BlockFate all = BlockFate::drawn;
-  for (const kernels::View& view : views_) {
-    all = fate(block, view);
-    if (all == BlockFate::drawn) break;
+BlockFate BlockCulling::fate(const Block& block, double& away) const {
+  BlockFate all = fate(block, views_.front(), away);
+  if (all != BlockFate::drawn && views_.size() > 1) {
+    double unknown = -1;
+    all = fate(block, views_.back(), unknown);
   }
   return all;
 }
 
-BlockFate BlockCulling::fate(const Block& block, const kernels::View& view) const {
-  const Placed placed = place(block, view);
+BlockFate BlockCulling::fate(const Block& block, const kernels::View& view, double& away) const {
+  const Placed placed = place(block, away, view);
+  away = placed.away;
   if (is_outside(placed, view)) return BlockFate::outside_frustum;
   if (faces_away(block, placed, view)) return BlockFate::facing_away;
   return BlockFate::drawn;

@@ -18,12 +18,14 @@ class BlockCulling {
   // `settings`: which faces are drawn, and how far splats reach. The view is rigid, as view_of makes it.
   BlockCulling(const kernels::View& view, const Splatting& settings);
 
-  BlockFate fate(const Block& block) const;
+  // `away`: in, the least cosine between the normals and the rays from the eye to its surfels as far as what
+  // the block is below tells; out, what it tells itself. -1: nothing.
+  BlockFate fate(const Block& block, double& away) const;
 
  private:
   struct Placed;  // a block as the camera sees it
-  BlockFate fate(const Block& block, const kernels::View& view) const;
-  Placed place(const Block& block, const kernels::View& view) const;
+  BlockFate fate(const Block& block, const kernels::View& view, double& away) const;
+  Placed place(const Block& block, double away, const kernels::View& view) const;
   bool is_outside(const Placed& placed, const kernels::View& view) const;
   bool faces_away(const Block& block, const Placed& placed, const kernels::View& view) const;
 

@@ -240,7 +240,13 @@ std::vector<Surfel> corners_of(const kernels::Box& box) {
 
 kernels::View view_of(SceneSettings& settings, const kernels::Box& box, std::string_view file) {
   const FrameSize frame{settings.width, settings.height};
-  frame_camera(corners_of(box), 0, frame, settings.camera_given, settings.camera);
+  const std::vector<Surfel> corners = corners_of(box);
+  Camera& camera = settings.camera;
+  frame_camera(corners, frame, settings.camera_given, camera);
+  DepthRange depths;
+  for (const Surfel& corner : corners)
+    depths.add(glm::dot(glm::dvec3(corner.position) - camera.eye, ahead_of(camera)), 0);
+  place_planes(depths, settings.camera_given, camera);
   check_camera(settings, file);
   return traces::view_of(settings.camera, frame);
 }

@@ -83,6 +83,10 @@ TEST(VolumeScene, SaysWhatIsWrong) {
             "a.toml:2: volume.light is zero, expected a direction");
   EXPECT_TRUE(volume_scene_error("[volume]\n[camera]\nnear = 60\n")
                   .starts_with("a.toml:3: camera.near is 60, but what is to be seen ends "));
+  EXPECT_EQ(
+      volume_scene_error("[volume]\n[camera]\neye = [1e30, 0, 0]\ntarget = [-1e30, 0, 0]\n"),
+      "a.toml:3: seen from camera.eye [1e+30, 0, 0] toward camera.target [-1e+30, 0, 0] all has the same "
+      "depth in binary64, expected an eye nearer to what is to be seen");
   EXPECT_EQ(volume_scene_error("[volume]\nfile = \"none.nrrd\"\n"),
             "none.nrrd: cannot be read, expected a NRRD file");
   for (const auto& [points, wrong] :
