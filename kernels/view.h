@@ -42,6 +42,9 @@ struct View {
   double z_of(double depth) const { return near_plane / (1 - depth * (far_plane - near_plane) / far_plane); }
 };
 
+// Eq. 10, for a field of view of a frame's height.
+double eta_of(double fov_y_degrees, int height);
+
 // A view from `eye` to `target` with `up` upward in the picture; the field of view is that of the frame's
 // height, in degrees, in (0, 180). eye != target, and `up` not along the line of sight.
 View look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, double fov_y_degrees,

@@ -12,6 +12,7 @@
 #include "studies/reproduction/figure10.h"
 #include "studies/reproduction/figure3.h"
 #include "studies/reproduction/table2.h"
+#include "traces/framing.h"
 
 namespace splatscope::studies {
 namespace {
@@ -136,6 +137,7 @@ std::vector<FidelityRow> all_table2_rows(const Progress& progress) {
     scene.name = model.name;
     for (const auto& published : model.published) {
       scene.frame.width = scene.frame.height = published.resolution;
+      traces::place_planes(scene);
       const double next = done + static_cast<double>(model.points) / static_cast<double>(points);
       const FidelityFrame drawn{scene.name, published.resolution, [scene](const Machine& machine) {
                                   traces::Scene on_card = scene;

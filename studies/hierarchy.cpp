@@ -11,6 +11,7 @@
 #include "studies/reference_comparison.h"
 #include "studies/reproduction/table2.h"
 #include "studies/run.h"
+#include "traces/framing.h"
 #include "traces/hierarchy/block_choice.h"
 #include "traces/recorder.h"
 #include "traces/splat_trace.h"
@@ -147,7 +148,8 @@ void study_levels(Findings& findings, const Machine& machine, const Progress& pr
   }
   findings.table(
       "The salamander from further away: the finest level alone, and with a surfel a pixel where a coarser "
-      "level has as many. Pictures against the double-precision reference.",
+      "level has as many. Rates of frames normalised per surfel; pictures normalised per pixel, against the "
+      "double-precision reference.",
       {{"distance"},
        {"spacing", number},
        {"surfels", number},
@@ -175,8 +177,10 @@ void study_progressive(Findings& findings, const Machine& machine) {
     pictures.push_back(
         {"progressive-" + number, fmt::format("frame {}: {} surfels", number, row.surfels), row.picture});
   }
-  findings.table("Frames of a progressive rendering, each against the last.",
-                 {{"frame"}, {"surfels", number}, {"ms", number}, {"PSNR", number}}, cells);
+  findings.table(
+      "Frames of a progressive rendering: times of those normalised per surfel; pictures normalised "
+      "per pixel, each against the last.",
+      {{"frame"}, {"surfels", number}, {"ms", number}, {"PSNR", number}}, cells);
   findings.pictures(pictures);
   findings.result("progressive", std::move(results));
 }
@@ -224,8 +228,7 @@ CullingRow culling_row(traces::Scene scene, const Machine& machine) {
 LevelRow level_row(traces::Scene scene, double times, const Machine& machine) {
   const glm::dvec3 away = (times - 1) * (scene.camera.eye - scene.camera.target);
   scene.camera.eye += away;
-  scene.camera.near += glm::length(away);
-  scene.camera.far += glm::length(away);
+  traces::place_planes(scene);
   LevelRow row;
   const kernels::View view = traces::view_of(scene.camera, scene.frame);
   const traces::LdcTree tree = traces::build_ldc_tree(scene.surfels, scene.hierarchy.block_surfels);

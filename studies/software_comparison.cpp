@@ -9,6 +9,7 @@
 #include "studies/growth.h"
 #include "studies/measure.h"
 #include "studies/reference_comparison.h"
+#include "traces/framing.h"
 #include "traces/splat_trace.h"
 
 namespace splatscope::studies {
@@ -82,6 +83,7 @@ std::vector<SoftwareRow> software_rows(traces::Scene scene, std::span<const int>
   kernels::FastSplatting fast(surfels);
   for (const int resolution : resolutions) {
     scene.frame = {.width = resolution, .height = resolution};
+    traces::place_planes(scene);
     const kernels::View view = traces::view_of(scene.camera, scene.frame);
     add(kSingle, median_seconds(repeats, [&] {
           fast.draw(view, {.cutoff = cutoff, .depth_offset = offset, .cull_back_faces = true});

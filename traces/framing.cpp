@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "kernels/bounds.h"
+#include "kernels/view.h"
 #include "traces/splat_reach.h"
 
 namespace splatscope::traces {
@@ -81,30 +82,33 @@ glm::dvec3 ahead_of(const Camera& camera) {
 DepthRange depths_of(std::span<const Surfel> surfels, const Splatting& splatting, const FrameSize& frame,
                      const Camera& camera) {
   const glm::dvec3 ahead = ahead_of(camera);
-  const double eta = 0.5 * frame.height / std::tan(camera.fov_y_degrees * std::numbers::pi / 360);
+  const double eta = kernels::eta_of(camera.fov_y_degrees, frame.height);
   DepthRange range;
   for (const Surfel& s : surfels) {
     const glm::dvec3 ray = glm::dvec3(s.position) - camera.eye;
     const double depth = glm::dot(ray, ahead);
-    const double corner = std::max(2.0, corner_reach(splatting)) * s.radius;
-    double reach = corner;
+    double reach = 0;
     if (depth > 0) {
       const glm::dvec3 normal(s.normal);
       const double cosine = std::max(kEdgeOnCosine, std::abs(glm::dot(normal, ray)) / glm::length(ray));
-      const double filter = std::min(depth / (eta * cosine), longest_filter(splatting, depth));
+      const double filter = std::min(filter_length(depth, eta, cosine), longest_filter(splatting, depth));
       const double along = glm::dot(normal, ahead);
       reach = quad_reach(splatting, s.radius, filter) * std::sqrt(std::max(0.0, 1 - along * along));
     }
-    range.add(depth, std::max(corner, reach));
+    range.add(depth, std::max(2.0 * s.radius, reach));
   }
-  range.furthest += splatting.depth_offset;
-  const double room = kRoom * (range.furthest - range.nearest);
-  return {range.nearest - room, range.furthest + room};
+  const double between = range.furthest - range.nearest;
+  const double room = kRoom * between;
+  return {range.nearest - room, range.furthest + room + std::min(splatting.depth_offset, between)};
 }
 
 void place_planes(const DepthRange& depths, const CameraKeys& given, Camera& camera) {
   if (!given.far) camera.far = depths.furthest > 0 ? depths.furthest : 1;  // 0: all of it behind the eye
   if (!given.near) camera.near = std::max(depths.nearest, kClosest * camera.far);
+}
+
+void place_planes(Scene& scene) {
+  place_planes(depths_of(scene.surfels, scene.splatting, scene.frame, scene.camera), {}, scene.camera);
 }
 
 }  // namespace splatscope::traces

@@ -9,7 +9,7 @@
 
 namespace splatscope::traces {
 
-// Which keys of [camera] a scene gives; the others are chosen by frame_camera.
+// Which keys of [camera] a scene gives; the others are chosen by frame_camera and place_planes.
 struct CameraKeys {
   bool eye = false, target = false, up = false, fov_y_degrees = false, near = false, far = false;
 };
@@ -33,13 +33,17 @@ struct DepthRange {
   }
 };
 
-// Of the quads of both passes, moved by z_t, but for those seen edge-on (splat_reach.h), with 2 radii at the
-// least from each surfel and a tenth of the range on either side. Normals are of unit length.
+// Of the quads of both passes, of one surfel at least: 2 radii from each at the least, low-pass filters as
+// far as edge-on ones count (splat_reach.h), a tenth of all that as room on either side, and z_t, but no more
+// than what lies between: beyond it the visibility pass hides nothing. Normals are of unit length.
 DepthRange depths_of(std::span<const Surfel> surfels, const Splatting& splatting, const FrameSize& frame,
                      const Camera& camera);
 
 // Clip planes as close to what is seen as they may be, for the sake of the depth's precision: the near one
 // at a thousandth of the far one's distance at the least. A key that is given stays.
 void place_planes(const DepthRange& depths, const CameraKeys& given, Camera& camera);
+
+// Both of them anew, where the frame or the eye of a scene with surfels has changed.
+void place_planes(Scene& scene);
 
 }  // namespace splatscope::traces

@@ -77,9 +77,10 @@ TEST(Framing, ThePlanesHoldTheWholeSplats) {
                     "s.toml");
     double nearest = 9, furthest = 0;
     for (const Surfel& s : scene.surfels) {
-      const double corner = 2 * sigma * std::sqrt(cutoff) * s.radius, z = 9 - double{s.position.z};
-      nearest = std::min(nearest, z - corner);
-      furthest = std::max(furthest, z + corner);
+      for (const glm::dvec3& corner : quad_corners(s, scene.splatting)) {
+        nearest = std::min(nearest, 9 - corner.z);
+        furthest = std::max(furthest, 9 - corner.z);
+      }
     }
     EXPECT_LE(scene.camera.near, nearest + 1e-6) << sigma << ' ' << cutoff;
     EXPECT_GE(scene.camera.far, furthest - 1e-6) << sigma << ' ' << cutoff;
@@ -109,9 +110,10 @@ TEST(Framing, CornersOfASplatLieWhereItsDomainEnds) {
   EXPECT_NEAR(corner_reach(splatting) * surfel.radius, std::numbers::sqrt2 * half_side, 1e-12);
 }
 
-Splatting splatting_of(double depth_offset = 0) {
+Splatting splatting_of(double depth_offset = 0, double sigma = 1) {
   Splatting splatting;
-  splatting.cutoff = splatting.sigma = 1;
+  splatting.cutoff = 1;
+  splatting.sigma = sigma;
   splatting.depth_offset = depth_offset;
   return splatting;
 }
@@ -125,9 +127,9 @@ DepthRange depths_of_one(const glm::vec3& normal, float radius, const Splatting&
   return depths_of(one, splatting, {side, side}, camera);
 }
 
-// Two standard deviations to a corner, half as much again for other programs, a hundredth for rounding: a
-// pixel is 8 / 32 there, and on a surfel that is seen at a cosine of 0.6 longer by 1 / 0.6, of which 0.8 lie
-// along z.
+// Two standard deviations to a corner, half as much again for other programs: a pixel is 8 / 32 there, and on
+// a surfel that is seen at a cosine of 0.6 longer by 1 / 0.6, of which 0.8 lie along z. A tenth of the range
+// is left on either side.
 TEST(Framing, ThePlanesHoldTheLowPassFilter) {
   const DepthRange depths = depths_of_one({0.8f, 0, -0.6f}, 0.3f, splatting_of());
   const double reach = 1.5 * 2 * std::hypot(0.3, 0.25 / 0.6) * 0.8;
@@ -146,11 +148,13 @@ TEST(Framing, ThePlanesOfWhatIsSeenEdgeOnAreNotWithoutEnd) {
   }
 }
 
-// The visibility pass moves its quads away from the eye.
+// The visibility pass moves its quads away from the eye; further than what there is to see they hide nothing.
 TEST(Framing, TheFarPlaneHoldsTheDepthOffset) {
-  const DepthRange depths = depths_of_one({0, 0, -1}, 0.5f, splatting_of(3));
-  EXPECT_DOUBLE_EQ(depths.nearest, 7 - 0.5);
-  EXPECT_DOUBLE_EQ(depths.furthest, 12 + 0.5);
+  for (const auto& [offset, furthest] : {std::pair(1.5, 10.7), {2.0, 11.2}, {1e30, 11.2}}) {
+    const DepthRange depths = depths_of_one({0, 0, -1}, 0.5f, splatting_of(offset));
+    EXPECT_DOUBLE_EQ(depths.nearest, 7 - 0.2) << offset;
+    EXPECT_DOUBLE_EQ(depths.furthest, furthest) << offset;
+  }
 }
 
 // Quads of the first pass reach sqrt 2 radii, and more room is left than that: 2, and a tenth of the range.
@@ -159,7 +163,7 @@ TEST(Framing, ThePlanesAreTwoRadiiFromSmallSplats) {
   camera.eye = {0, 0, -9};
   const std::vector<Surfel> one{{{0, 0, 0}, {0, 0, -1}, 0.5f, {}}};
   frame_camera(one, {64, 64}, {.eye = true}, camera);
-  place_planes(depths_of(one, splatting_of(), {64, 64}, camera), {}, camera);
+  place_planes(depths_of(one, splatting_of(0, 0.5), {64, 64}, camera), {}, camera);
   EXPECT_DOUBLE_EQ(camera.near, 8 - 0.2);
   EXPECT_DOUBLE_EQ(camera.far, 10 + 0.2);
 }
@@ -170,7 +174,7 @@ TEST(Framing, ThePlanesOfAnEyeInsideAreNotTooFarApart) {
   camera.target = {0, 0, 1};
   const std::vector<Surfel> around{{{0, 0, -5}, {0, 0, 1}, 0.5f, {}}, {{0, 0, 9}, {0, 0, -1}, 0.5f, {}}};
   frame_camera(around, {64, 64}, {.eye = true, .target = true}, camera);
-  place_planes(depths_of(around, splatting_of(), {64, 64}, camera), {}, camera);
+  place_planes(depths_of(around, splatting_of(0, 0.5), {64, 64}, camera), {}, camera);
   EXPECT_DOUBLE_EQ(camera.far, 10 + 1.6);
   EXPECT_DOUBLE_EQ(camera.near, 0.0116);
 }

@@ -279,7 +279,8 @@ std::string text_of(const glm::dvec3& v) {
   return fmt::format("[{:g}, {:g}, {:g}]", v.x, v.y, v.z);
 }
 
-// near >= far. Where a scene leaves a plane open it is put where what is to be seen begins or ends.
+// near >= far. Where a scene leaves a plane open it is put where what is to be seen begins or ends, with
+// room.
 [[noreturn]] void refuse_planes(const SceneSettings& settings, std::string_view file) {
   const Camera& c = settings.camera;
   const CameraKeys& given = settings.camera_given;
@@ -331,12 +332,12 @@ void check_points(const SceneSettings& settings, std::string_view file) {
 
 void check_camera(const SceneSettings& settings, std::string_view file) {
   const Camera& c = settings.camera;
-  if (!(c.near < c.far)) refuse_planes(settings, file);
-  const int at = settings.line_of({"camera.up", "camera.eye", "camera.target"});
   const glm::dvec3 view = c.target - c.eye;
   if (glm::length(view) == 0)
     throw UserError(file, settings.line_of({"camera.eye", "camera.target"}),
                     "camera.eye equals camera.target, expected two points");
+  if (!(c.near < c.far)) refuse_planes(settings, file);
+  const int at = settings.line_of({"camera.up", "camera.eye", "camera.target"});
   if (glm::length(c.up) == 0) throw UserError(file, at, "camera.up is zero, expected a direction");
   if (glm::length(glm::cross(glm::normalize(view), glm::normalize(c.up))) < 1e-9)
     throw UserError(

@@ -12,7 +12,7 @@ struct Surfels {
   SkipCounts skipped;
   EstimateCounts estimated;
   MeshCounts mesh;
-  Camera camera;                   // the settings', completed (framing.h)
+  Camera camera;                   // the settings', completed but for its clip planes (framing.h)
   double average_spacing = 0;      // object units, > 0
   std::vector<NamedFile> files{};  // that a mesh was read from
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "traces/framing.h"
 #include "traces/median.h"
 
 namespace splatscope::studies {
@@ -108,6 +109,7 @@ std::vector<Table2Row> table2_rows(Fidelity fidelity, const Progress& progress) 
            {std::pair(machine::kRadeon8500, radeon), {machine::kGeForce4, ti4400}}) {
         const Machine machine = machine::load(name);
         scene.frame = {.width = resolution, .height = resolution};
+        traces::place_planes(scene);
         scene.splatting.video_megabytes = free_video_memory(name);
         const traces::Recording recording = traces::record(scene, machine.numbers);
         Table2Row row =

@@ -39,7 +39,7 @@ TEST(Table2, ComesNearThePublishedRatesAndKeepsTheirOrder) {
     }
   }
   // The vertex units are the bottleneck at both sizes: with the same blocks, 512 is slower by what its frame
-  // takes to clear (docs/table2.md).
+  // takes to clear, which is little (docs/table2.md), as is the salamander's lead of the chameleon.
   for (const Table2Model& model : table2_models()) {
     for (const std::string_view machine : {machine::kRadeon8500, machine::kGeForce4}) {
       EXPECT_EQ(found.at(key(model.name, 256, machine))->drawn,

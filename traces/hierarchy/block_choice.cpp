@@ -34,19 +34,20 @@ class Walk {
   ChosenFrame take() { return std::move(frame_); }
 
  private:
-  // `away`: block_culling.h.
-  void visit(std::size_t level, const Block& block, double away = -1) {
+  // `known`: by the blocks that it is below.
+  void visit(std::size_t level, const Block& block, LeastCosines known = {}) {
     BlockCounts& counts = frame_.counts;
     const bool refine = level > finest_ && !fine_enough(level, block);
     if (hierarchy_.culling == Culling::blocks && (!refine || same_eye_)) {
-      const BlockFate fate = culling_[level].fate(block, away);
+      const BlockFate fate = culling_[level].fate(block, known);
       if (fate == BlockFate::outside_frustum) counts.outside_frustum += block.below;
       if (fate == BlockFate::facing_away) counts.facing_away += block.below;
       if (fate != BlockFate::drawn) return;
     }
     if (refine) {
       const std::vector<Block>& finer = tree_.levels[level - 1].blocks;
-      for (std::uint32_t i = 0; i < block.children; ++i) visit(level - 1, finer[block.first_child + i], away);
+      for (std::uint32_t i = 0; i < block.children; ++i)
+        visit(level - 1, finer[block.first_child + i], known);
       return;
     }
     ++counts.blocks;

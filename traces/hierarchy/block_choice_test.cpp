@@ -105,6 +105,34 @@ TEST(BlockChoice, BlocksThatFollowEachOtherAreOneRange) {
   EXPECT_GT(all.frames.front().counts.blocks, 1u);
 }
 
+// A coarse block that faces away, one of whose surfels is so small that the pixel grid may turn it round,
+// over one whose own cone tells nothing.
+TEST(BlockChoice, WhatABlockTellsHoldsForThoseBelow) {
+  const Surfel surfel{{0, 0, 20}, {0, 0, 1}, 1, {}};
+  LdcTree tree{{TreeLevel{1, {surfel}, {}}, TreeLevel{2, {surfel}, {}}}, {0}};
+  Block block;
+  block.count = block.below = 1;
+  block.box = {surfel.position, surfel.position};
+  block.least_radius = block.greatest_radius = surfel.radius;
+  block.axis = surfel.normal;
+  block.behind = block.before = surfel.position;
+  block.spread = 3;
+  tree.levels[0].blocks = {block};
+  block.spread = 0;
+  block.least_radius = 1e-6;
+  block.children = 1;
+  tree.levels[1].blocks = {block};
+  Splatting splatting;
+  splatting.cutoff = splatting.sigma = splatting.depth_offset = 1;
+  splatting.faces = Faces::front;
+  Hierarchy hierarchy;
+  hierarchy.culling = Culling::blocks;
+  const kernels::View view = kernels::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 500, 500, 1, 1000);
+  EXPECT_EQ(choose_blocks(tree, view, splatting, hierarchy).front().counts.facing_away, 1u);
+  tree.levels[1].blocks[0].spread = 3;
+  EXPECT_EQ(choose_blocks(tree, view, splatting, hierarchy).front().counts.facing_away, 0u);
+}
+
 // Twice as far apart as those of the level below.
 TEST(BlockChoice, TheDepthOffsetGrowsWithTheSpacing) {
   Splatting splatting;
@@ -120,8 +148,12 @@ TEST(BlockChoice, WhatIsFarIsDrawnCoarsely) {
   std::size_t last = all + 1;
   for (const double distance : {0.2, 4.0, 16.0, 64.0}) {
     scene.camera.eye = scene.camera.target + distance * ray;
-    // Close to the surfels: they cut boxes.
-    place_planes(depths_of(scene.surfels, scene.splatting, scene.frame, scene.camera), {}, scene.camera);
+    place_planes(scene);
+    // Through the nearest surfel: the near plane cuts boxes.
+    const kernels::View view = view_of(scene.camera, scene.frame);
+    scene.camera.near = view.camera_space(glm::dvec3(scene.surfels.front().position)).z;
+    for (const Surfel& surfel : scene.surfels)
+      scene.camera.near = std::min(scene.camera.near, view.camera_space(glm::dvec3(surfel.position)).z);
     const Choice choice = choose(scene);
     const std::size_t drawn = choice.frames.front().counts.surfels;
     EXPECT_LT(drawn, last) << distance;

@@ -35,9 +35,7 @@ constexpr double kDepthRounding = 2e-6;
 struct BlockCulling::Placed {
   std::array<glm::dvec3, 8> corners;                    // camera space
   double nearest = kUnbounded, furthest = -kUnbounded;  // camera z
-  // The least cosine between the normal and the viewing ray where all surfels face away (toward the eye); not
-  // positive where some may not.
-  double away = -1, toward = -1;
+  LeastCosines cosines;
   // Of the quads of both passes from their surfels' centres; and its part along camera z.
   double reach = kUnbounded, depth_reach = kUnbounded;
 };
@@ -53,7 +51,8 @@ BlockCulling::BlockCulling(const kernels::View& view, const Splatting& settings)
             glm::normalize(glm::dvec3(0, view.eta, -h)), glm::normalize(glm::dvec3(0, -view.eta, -h))};
 }
 
-BlockCulling::Placed BlockCulling::place(const Block& block, double away, const kernels::View& view) const {
+BlockCulling::Placed BlockCulling::place(const Block& block, const LeastCosines& known,
+                                         const kernels::View& view) const {
   Placed placed;
   double distance = 0;  // largest
   for (std::size_t i = 0; i < placed.corners.size(); ++i) {
@@ -78,15 +77,15 @@ BlockCulling::Placed BlockCulling::place(const Block& block, double away, const 
     const double angle = std::acos(std::clamp(sign * glm::dot(axis, ray) / length, -1.0, 1.0)) + block.spread;
     return angle < 0.5 * std::numbers::pi ? std::cos(angle) * std::min(1.0, length / distance) : -1.0;
   };
-  placed.away = std::max(away, least_cosine(block.behind, 1));
-  placed.toward = least_cosine(block.before, -1);
+  placed.cosines.away = std::max(known.away, least_cosine(block.behind, 1));
+  placed.cosines.toward = std::max(known.toward, least_cosine(block.before, -1));
 
   // The programs hold z at the near plane behind it.
-  const double cosine = std::max(placed.away, placed.toward);
+  const double cosine = std::max(placed.cosines.away, placed.cosines.toward);
   if (!(cosine > 0) || (placed.nearest < view.near_plane && placed.furthest > -view.near_plane))
     return placed;
   const double z = std::max(placed.furthest, view.near_plane);
-  const double filter = z / (view.eta * cosine);
+  const double filter = filter_length(z, view.eta, cosine);
   if (filter > longest_filter(settings_, z)) return placed;
   placed.reach = quad_reach(settings_, block.greatest_radius, filter);
   const double from_z = std::acos(std::min(std::abs(axis.z), 1.0)) + block.spread;  // of normals
@@ -97,18 +96,18 @@ BlockCulling::Placed BlockCulling::place(const Block& block, double away, const 
 }
 
 // Culled where no pass can show it.
-BlockFate BlockCulling::fate(const Block& block, double& away) const {
-  BlockFate all = fate(block, views_.front(), away);
+BlockFate BlockCulling::fate(const Block& block, LeastCosines& known) const {
+  BlockFate all = fate(block, views_.front(), known);
   if (all != BlockFate::drawn && views_.size() > 1) {
-    double unknown = -1;
-    all = fate(block, views_.back(), unknown);
+    LeastCosines nothing;
+    all = fate(block, views_.back(), nothing);
   }
   return all;
 }
 
-BlockFate BlockCulling::fate(const Block& block, const kernels::View& view, double& away) const {
-  const Placed placed = place(block, away, view);
-  away = placed.away;
+BlockFate BlockCulling::fate(const Block& block, const kernels::View& view, LeastCosines& known) const {
+  const Placed placed = place(block, known, view);
+  known = placed.cosines;
   if (is_outside(placed, view)) return BlockFate::outside_frustum;
   if (faces_away(block, placed, view)) return BlockFate::facing_away;
   return BlockFate::drawn;
@@ -134,7 +133,7 @@ bool BlockCulling::faces_away(const Block& block, const Placed& placed, const ke
   for (const glm::dvec3& corner : placed.corners)
     if (std::max(std::abs(corner.x), std::abs(corner.y)) + placed.reach > guard) return false;
   const double half_side = std::min(1.0, std::sqrt(2 * settings_.cutoff) * settings_.sigma);
-  return placed.away > turning_cosine(2 * half_side * block.least_radius * view.eta / furthest);
+  return placed.cosines.away > turning_cosine(2 * half_side * block.least_radius * view.eta / furthest);
 }
 
 }  // namespace splatscope::traces

@@ -81,10 +81,15 @@ Drawn drawn(Scene scene, const CapturedWeights& weights, Culling culling, const 
 void expect_same_pictures(const char* generator, const char* settings_name, auto&& change) {
   Scene scene = small_model(generator);
   change(scene);
+  const Camera framed = scene.camera;
   const CapturedWeights weights = uniform_weights(scene.surfels.size(), scene.splatting.gamma);
   std::mt19937 random(random_seed());
   for (int i = 0; i < 30; ++i) {
-    scene.camera = i == 0 ? close_up() : any_camera(random);
+    if (i == 1) {
+      scene.camera = framed;  // with planes as they are by default
+    } else {
+      scene.camera = i == 0 ? close_up() : any_camera(random);
+    }
     const Drawn all = drawn(scene, weights, Culling::off), some = drawn(scene, weights, Culling::blocks);
     ASSERT_EQ(all.frame, some.frame) << generator << ", " << settings_name << ", view " << i;
     const BlockCounts& blocks = some.blocks;
@@ -93,7 +98,8 @@ void expect_same_pictures(const char* generator, const char* settings_name, auto
       EXPECT_EQ(0u, blocks.facing_away) << "view " << i;
     }
     if (i != 0) continue;
-    // Or the test would say nothing: of a random view nobody knows how much is culled.
+    // Or the test would say nothing: of a random view nobody knows how much is culled. What is outside and
+    // faces away counts as the latter where a larger block does.
     const std::size_t a_twelfth = (blocks.surfels + blocks.outside_frustum + blocks.facing_away) / 12;
     EXPECT_GT(blocks.outside_frustum, a_twelfth) << generator;
     if (!both_faces) {
@@ -152,6 +158,12 @@ TEST(BlockCulling, NeverChangesThePictureOfOtherSettings) {
     s.hierarchy.levels = true;
     s.hierarchy.surfels_per_pixel = 0.1;
   });
+  expect_same_pictures("salamander", "large blocks of levels", [](Scene& s) {
+    s.splatting.algorithm = Algorithm::ewa_per_pixel;
+    s.hierarchy.levels = true;
+    s.hierarchy.surfels_per_pixel = 0.02;
+    s.hierarchy.block_surfels = 64;
+  });
   expect_same_pictures("salamander", "depth offset along z", [](Scene& s) {
     s.splatting.depth_offset_scheme = DepthOffsetScheme::camera_z;
     s.splatting.depth_offset *= 4;
@@ -173,13 +185,14 @@ Block block_of(std::initializer_list<glm::vec3> positions, const glm::vec3& norm
 }
 
 // 90 degrees of view, 500 pixels each way: an eta of 250.
-BlockFate fate_of(const Block& block, const Splatting& splatting, const glm::dvec3& target, double& away) {
+BlockFate fate_of(const Block& block, const Splatting& splatting, const glm::dvec3& target,
+                  LeastCosines& known) {
   const kernels::View view = kernels::look_at({0, 0, 0}, target, {0, 1, 0}, 90, 500, 500, 1, 1000);
-  return BlockCulling(view, splatting).fate(block, away);
+  return BlockCulling(view, splatting).fate(block, known);
 }
 BlockFate fate_of(const Block& block, const Splatting& splatting, const glm::dvec3& target = {0, 0, 1}) {
-  double away = -1;
-  return fate_of(block, splatting, target, away);
+  LeastCosines known;
+  return fate_of(block, splatting, target, known);
 }
 
 Splatting splatting_of(Faces faces = Faces::front, double depth_offset = 1) {
@@ -271,19 +284,30 @@ TEST(BlockCulling, LooksFromTheNearestPlane) {
 }
 
 // The cone of a block can tell more than those of the blocks below it.
-TEST(BlockCulling, WhatABlockIsBelowBoundsItToo) {
+TEST(BlockCulling, WhatIsKnownOfABlockCounts) {
   const Block block = block_of({{-2, 0, 20}, {18, 0, 20}}, {1, 0, 0});
-  const auto fate = [&](double& away) { return fate_of(block, splatting_of(), {0, 0, 1}, away); };
-  double away = -1;
-  EXPECT_EQ(BlockFate::drawn, fate(away));
-  EXPECT_LT(away, 0) << "it tells nothing itself";
-  away = 0.5;
-  EXPECT_EQ(BlockFate::facing_away, fate(away));
-  EXPECT_EQ(away, 0.5);
-  away = -1;
-  EXPECT_EQ(BlockFate::facing_away,
-            fate_of(block_of({{0, 0, 20}}, {0.6f, 0, 0.8f}), splatting_of(), {0, 0, 1}, away));
-  EXPECT_NEAR(away, 0.8, 1e-6);
+  const auto fate = [&](const Block& seen, LeastCosines& known) {
+    return fate_of(seen, splatting_of(), {0, 0, 1}, known);
+  };
+  LeastCosines known;
+  EXPECT_EQ(BlockFate::drawn, fate(block, known));
+  EXPECT_LT(known.away, 0) << "its cone tells nothing";
+  known.away = 0.5;
+  EXPECT_EQ(BlockFate::facing_away, fate(block, known));
+  EXPECT_EQ(known.away, 0.5);
+  known = {};
+  EXPECT_EQ(BlockFate::facing_away, fate(block_of({{0, 0, 20}}, {0.6f, 0, 0.8f}), known));
+  EXPECT_NEAR(known.away, 0.8, 1e-6);
+  known = {};
+  EXPECT_EQ(BlockFate::drawn, fate(block_of({{0, 0, 20}}, {0.6f, 0, -0.8f}), known));
+  EXPECT_NEAR(known.toward, 0.8, 1e-6);
+  // Outside, of normals that may be edge-on as far as its own cone tells.
+  const glm::vec3 position(60, 0, 20), ray = glm::normalize(position), across(-ray.z, 0, ray.x);
+  const Block edge_on = block_of({position}, glm::normalize(across - 0.02f * ray));
+  known = {};
+  EXPECT_EQ(BlockFate::drawn, fate(edge_on, known));
+  known.toward = 0.2;
+  EXPECT_EQ(BlockFate::outside_frustum, fate(edge_on, known));
 }
 
 TEST(BlockCulling, KnowsWhatIsOutside) {

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <numeric>
+#include <ranges>
 
 namespace splatscope::traces {
 namespace {
@@ -124,33 +125,46 @@ void merge(const TreeLevel& fine, const Coded& from, TreeLevel& coarse, Coded& t
   });
 }
 
-// Calls use(surfel) for those that a block stands for and for its own, which are averages of them.
-template <class Use>
-void for_each(std::span<const Surfel> finest, std::span<const Surfel> own, const Use& use) {
-  for (const Surfel& surfel : finest) use(surfel);
-  for (const Surfel& surfel : own) use(surfel);
+// The surfels of a block, and of each finer level those below it, of which they are averages.
+using SurfelsByLevel = std::vector<std::span<const Surfel>>;
+
+SurfelsByLevel surfels_of(std::span<const TreeLevel> finer, const TreeLevel& level, const Block& block) {
+  SurfelsByLevel all{std::span(level.surfels).subspan(block.first, block.count)};
+  std::size_t first = block.first_child, end = first + block.children;
+  for (const TreeLevel& below : std::views::reverse(finer)) {
+    const Block &front = below.blocks[first], &back = below.blocks[end - 1];
+    all.push_back(std::span(below.surfels).subspan(front.first, back.first + back.count - front.first));
+    first = front.first_child;
+    end = std::size_t{back.first_child} + back.children;
+  }
+  return all;
 }
 
-void bound_box(std::span<const Surfel> finest, std::span<const Surfel> own, Block& block) {
-  block.least_radius = block.greatest_radius = double{finest.front().radius};
-  for_each(finest, own, [&](const Surfel& s) {
+template <class Use>
+void for_each(const SurfelsByLevel& all, const Use& use) {
+  for (const std::span<const Surfel> surfels : all) std::ranges::for_each(surfels, use);
+}
+
+void bound_box(const SurfelsByLevel& all, Block& block) {
+  block.least_radius = block.greatest_radius = double{all.front().front().radius};
+  for_each(all, [&](const Surfel& s) {
     block.box.add(glm::dvec3(s.position));
     block.least_radius = std::min(block.least_radius, double{s.radius});
     block.greatest_radius = std::max(block.greatest_radius, double{s.radius});
   });
 }
 
-void bound_cones(std::span<const Surfel> finest, std::span<const Surfel> own, Block& block) {
+void bound_cones(const SurfelsByLevel& all, Block& block) {
   glm::dvec3 sum{};
-  for_each(finest, own, [&](const Surfel& s) { sum += glm::dvec3(s.normal); });
+  for_each(all, [&](const Surfel& s) { sum += glm::dvec3(s.normal); });
   block.axis = glm::normalize(sum);  // never 0: one component has the same sign in all
   double least = 1;
-  for_each(finest, own,
+  for_each(all,
            [&](const Surfel& s) { least = std::min(least, glm::dot(block.axis, glm::dvec3(s.normal))); });
   block.spread = std::acos(std::clamp(least, -1.0, 1.0));
   const glm::dvec3 middle = block.box.middle();
   double lowest = 0, highest = 0;  // where planes cut the axis
-  for_each(finest, own, [&](const Surfel& s) {
+  for_each(all, [&](const Surfel& s) {
     const glm::dvec3 normal(s.normal), from_middle = glm::dvec3(s.position) - middle;
     const double along = glm::dot(block.axis, from_middle);
     block.bottom = std::min(block.bottom, along);
@@ -165,21 +179,14 @@ void bound_cones(std::span<const Surfel> finest, std::span<const Surfel> own, Bl
   block.before = middle + highest * block.axis;
 }
 
-// The blocks of a level, `edge_bits` of a cell's number wide.
-void make_blocks(const LdcTree& tree, const Coded& coded, int edge_bits, TreeLevel& level) {
-  const std::vector<Surfel>& finest = tree.levels.empty() ? level.surfels : tree.levels.front().surfels;
-  std::uint32_t finest_first = 0;
+// The blocks of a level, `edge_bits` of a cell's number wide; without bounds.
+void make_blocks(const Coded& coded, int edge_bits, TreeLevel& level) {
   for_each_group(coded.codes, 3 * edge_bits, [&](std::size_t first, std::size_t end) {
     Block block;
     block.first = static_cast<std::uint32_t>(first);
     block.count = static_cast<std::uint32_t>(end - first);
     block.below = std::accumulate(coded.stands_for.begin() + static_cast<std::ptrdiff_t>(first),
                                   coded.stands_for.begin() + static_cast<std::ptrdiff_t>(end), 0u);
-    const auto all = std::span(finest).subspan(finest_first, block.below);
-    const auto own = std::span(level.surfels).subspan(first, end - first);
-    bound_box(all, own, block);
-    bound_cones(all, own, block);
-    finest_first += block.below;
     level.blocks.push_back(block);
   });
 }
@@ -197,6 +204,14 @@ void link_children(const TreeLevel& fine, const Coded& fine_coded, const Coded& 
       ++child;
     }
     block.children = child - block.first_child;
+  }
+}
+
+void bound_blocks(std::span<const TreeLevel> finer, TreeLevel& level) {
+  for (Block& block : level.blocks) {
+    const SurfelsByLevel all = surfels_of(finer, level, block);
+    bound_box(all, block);
+    bound_cones(all, block);
   }
 }
 
@@ -221,15 +236,17 @@ LdcTree build_ldc_tree(std::span<const Surfel> surfels, int block_surfels) {
     coded.codes.push_back(code);
   }
   coded.stands_for.assign(surfels.size(), 1);
-  make_blocks(tree, coded, edge_bits, level);
+  make_blocks(coded, edge_bits, level);
+  bound_blocks({}, level);
   tree.levels.push_back(std::move(level));
 
   for (int bits = edge_bits; grid.widest >> bits != 0; ++bits) {  // until one cell holds everything
     TreeLevel coarse;
     Coded coarse_coded;
     merge(tree.levels.back(), coded, coarse, coarse_coded);
-    make_blocks(tree, coarse_coded, edge_bits, coarse);
+    make_blocks(coarse_coded, edge_bits, coarse);
     link_children(tree.levels.back(), coded, coarse_coded, edge_bits, coarse);
+    bound_blocks(tree.levels, coarse);
     tree.levels.push_back(std::move(coarse));
     coded = std::move(coarse_coded);
   }

@@ -19,7 +19,8 @@ struct Block {
   std::uint32_t first_child = 0;  // blocks of the next finer level; none at the finest
   std::uint32_t children = 0;
   std::uint32_t below = 0;  // surfels of the finest level that it stands for
-  // Of its surfels and of all below it, so that what culls a block culls what it stands for. Object units.
+  // Of its surfels and of all below it, those of the levels between too, so that what culls a block culls
+  // whatever is drawn in its place. Object units.
   kernels::Box box;  // of the centres
   double least_radius = 0, greatest_radius = 0;
   // Normals lie within `spread` radians of `axis`. Along the axis the centres lie from `bottom` to `top`, as

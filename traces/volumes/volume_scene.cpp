@@ -248,7 +248,7 @@ kernels::View view_of(SceneSettings& settings, const kernels::Box& box, std::str
     depths.add(glm::dot(glm::dvec3(corner.position) - camera.eye, ahead_of(camera)), 0);
   place_planes(depths, settings.camera_given, camera);
   check_camera(settings, file);
-  return traces::view_of(settings.camera, frame);
+  return traces::view_of(camera, frame);
 }
 
 }  // namespace
