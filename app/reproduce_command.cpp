@@ -21,8 +21,11 @@ void add_reproduce_command(CLI::App& app, Invocation& invocation) {
   command->callback([options, &invocation] {
     const auto chosen = studies::choose(studies::reproductions(), "reproduce", options->names);
     studies::Findings findings(
-        options->out, "splatscope: Object Space EWA Surface Splatting, 2002",
-        "The published results of Ren, Pfister and Zwicker on the simulated machines of 2002.");
+        options->out, "splatscope: published results made again",
+        "Ren, Pfister and Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines; by "
+        "\"Zwicker 2002\", Zwicker, Pfister, van Baar and Gross, EWA Splatting (2002), in software and, what "
+        "it "
+        "wished for, on these machines.");
     ProgressBar progress("simulating", invocation.quiet);
     studies::run_studies(chosen, findings, progress.callback());
   });

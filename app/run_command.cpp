@@ -38,12 +38,13 @@ struct Options {
 
 // Of the capture, where there was one.
 void print_weights(const traces::RecordCounts& counts) {
-  if (counts.weights_captured + counts.weights_by_default + counts.weights_outside_box == 0) return;
+  const std::size_t all = counts.weights_captured + counts.weights_by_default + counts.weights_outside_box;
+  if (all == 0) return;
   std::cout << fmt::format(
-      "  weights: {} captured, {} of them a vertex; {} seen from no view, {} outside "
+      "  weights{}: {} captured, {} of them a vertex; {} seen from no view, {} outside "
       "of the box\n",
-      counts.weights_captured, counts.weights_at_edges, counts.weights_by_default,
-      counts.weights_outside_box);
+      all > counts.scene_surfels ? " of all levels" : "", counts.weights_captured, counts.weights_at_edges,
+      counts.weights_by_default, counts.weights_outside_box);
   if (counts.weights_captured == 0 && counts.weights_by_default > 0)
     std::cout
         << "  warning: no view of the capture shows a surfel, so no weight is captured and the picture is "
@@ -52,12 +53,14 @@ void print_weights(const traces::RecordCounts& counts) {
 }
 
 void print(const studies::Input& input, const Machine& machine, const studies::FrameRun& run) {
+  const std::size_t frames = frame_ends(input.trace).size();
   std::cout << fmt::format("{} on {}\n", input.name, machine.title);
   if (input.recorded)
     std::cout << fmt::format("  {} surfels, {}\n", input.recorded->scene_surfels,
                              traces::describe(input.skipped, input.estimated));
   if (input.recorded && !input.recorded->blocks.surfels_by_level.empty())
-    std::cout << fmt::format("  {}\n", traces::describe(input.recorded->blocks));
+    std::cout << fmt::format("  {}{}\n", frames > 1 ? fmt::format("in the last of {} frames: ", frames) : "",
+                             traces::describe(input.recorded->blocks));
   if (input.recorded) print_weights(*input.recorded);
   if (input.volume) std::cout << fmt::format("  {}\n", traces::describe(*input.volume));
   if (input.mesh.triangles > 0) std::cout << fmt::format("  {}\n", traces::describe(input.mesh));

@@ -63,14 +63,18 @@ Result::Bottleneck Result::bottleneck() const {
     return unit.name.starts_with("vertex") && unit.name.back() >= '0' && unit.name.back() <= '9';
   };
   Cycle all_vertex_units = kNever;
-  for (const UnitBooks& unit : units)
-    if (is_vertex_unit(unit)) all_vertex_units = std::min(all_vertex_units, unit.busy);
+  std::size_t vertex_units = 0;
+  for (const UnitBooks& unit : units) {
+    if (!is_vertex_unit(unit)) continue;
+    all_vertex_units = std::min(all_vertex_units, unit.busy);
+    ++vertex_units;
+  }
   const auto counted = [&](const UnitBooks& unit) {
     return is_vertex_unit(unit) ? all_vertex_units : unit.busy;
   };
   const UnitBooks& busiest = *std::ranges::max_element(
       units, {}, [&](const UnitBooks& unit) { return std::pair(counted(unit), unit.busy); });
-  return {busiest.name, counted(busiest)};
+  return {busiest.name, counted(busiest), is_vertex_unit(busiest) ? vertex_units : 0};
 }
 
 UnitBooks named_books(const SimulatedMachine& machine, const Unit& unit, const Books& books) {

@@ -191,8 +191,10 @@ TEST(Simulate, VertexUnitsAreBusyWhereAllOfThemAre) {
   };
   EXPECT_EQ(busiest(98, 53).unit, "agp");
   EXPECT_EQ(busiest(98, 53).busy, 98u);
+  EXPECT_EQ(busiest(98, 53).vertex_units, 0u);
   EXPECT_EQ(busiest(52, 53).unit, "vertex0");
   EXPECT_EQ(busiest(52, 53).busy, 53u);
+  EXPECT_EQ(busiest(52, 53).vertex_units, 2u);
 }
 
 TEST(Simulate, ASecondVertexUnitHalvesAVertexBoundDraw) {

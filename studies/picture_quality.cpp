@@ -178,6 +178,9 @@ void study_quality(Findings& findings, const Progress& progress) {
   const Machine machine = machine::load(machine::kGeForce4);
   const std::vector<ModelScene> models = all_models();
   findings.report().heading("Pictures of models against the double-precision reference");
+  if (const std::size_t there = models.size() - std::size(kGenerators); there < std::size(kFiles))
+    findings.text(fmt::format("{} of {} real models are in {}/ (./fetch-models): the others are left out\n",
+                              there, std::size(kFiles), kModelsFolder));
   auto list = nlohmann::ordered_json::array();
   std::vector<std::vector<std::string>> table;
   const double steps = static_cast<double>(std::size(kSettings) * models.size());

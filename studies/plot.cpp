@@ -30,9 +30,10 @@ std::string quoted(const std::string& text) {
 std::string script_of(const Plot& plot) {
   std::string script =
       "set terminal svg size 720,440 font 'sans-serif,13' noenhanced background rgb 'white'\n"
-      "set key below\nset grid lc rgb '#d9dde1'\nset offsets graph 0.02, graph 0.02, graph 0.05, "
-      "graph 0.05\n";
-  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title),
+      "set key below\nset format '%g'\nset grid lc rgb '#d9dde1'\nset offsets graph 0.02, graph 0.02, "
+      "graph 0.05, graph 0.05\n";
+  // A line below the x label, which else touches the key.
+  script += fmt::format("set title {}\nset xlabel {}.\"\\n\"\nset ylabel {}\n", quoted(plot.title),
                         quoted(plot.x_label), quoted(plot.y_label));
   if (plot.same_scale) script += "set size ratio -1\n";
   if (plot.log_x) script += "set logscale x\n";
@@ -43,9 +44,9 @@ std::string script_of(const Plot& plot) {
     const Plot::Series& series = plot.series[i];
     script += fmt::format("$s{} << EOD\n", i);
     for (std::size_t k = 0; k < series.x.size(); ++k) {
-      if (std::isfinite(series.x[k]) && std::isfinite(series.y[k])) {
-        script += fmt::format("{:.9g} {:.9g}\n", series.x[k], series.y[k]);
-      }
+      const bool is_there = std::isfinite(series.x[k]) && std::isfinite(series.y[k]);
+      // An empty line ends a curve, and another begins behind it.
+      script += is_there ? fmt::format("{:.9g} {:.9g}\n", series.x[k], series.y[k]) : "\n";
     }
     script += "EOD\n";
     if (!series.with_last) ++color;

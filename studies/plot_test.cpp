@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace splatscope::studies {
 namespace {
 
@@ -21,6 +24,21 @@ TEST(Plot, DrawsEachSeriesUnderItsName) {
 }
 
 // gnuplot warns of axes without extent.
+// Of five points two make a curve and two another.
+TEST(Plot, ACurveEndsWhereAValueIsMissing) {
+  const auto drawing = [](double middle) {
+    return svg_of({.title = "t",
+                   .x_label = "x",
+                   .y_label = "y",
+                   .series = {{"s", {1, 2, 3, 4, 5}, {1, 2, middle, 2, 1}}}});
+  };
+  const auto moves = [](const std::string& svg) {
+    const std::size_t curve = svg.find("<path", svg.find("gnuplot_plot_1"));
+    return std::ranges::count(svg.substr(curve, svg.find("/>", curve) - curve), 'M');
+  };
+  EXPECT_EQ(moves(drawing(3)) + 1, moves(drawing(std::nan(""))));
+}
+
 TEST(Plot, AWarningIsNoPartOfTheDrawing) {
   const Plot point{.title = "one", .x_label = "x", .y_label = "y", .series = {{"still", {2, 2}, {3, 3}}}};
   const std::string svg = svg_of(point);

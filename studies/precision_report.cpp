@@ -106,7 +106,8 @@ void add_overlaps(Findings& findings, const std::vector<OverlapRow>& rows) {
     text += "\n";
     plot.series.push_back(std::move(series));
   }
-  findings.say(text + "\n");
+  findings.text(text);
+  findings.say("\n");
   findings.plot("precision-overlaps", plot);
   findings.result("precision_overlaps", std::move(list));
 }
@@ -137,7 +138,7 @@ void add_depths(Findings& findings, const std::vector<DepthRow>& rows) {
     lost.y.push_back(row.lost);
     leaks.y.push_back(row.leaks);
   }
-  findings.say(text);
+  findings.text(text);
   findings.plot("precision-depth", plot);
   findings.result("precision_depth", std::move(list));
 }

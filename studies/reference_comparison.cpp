@@ -231,7 +231,7 @@ Image difference_picture(const Frame& frame, const kernels::SplatSums& reference
     const Vec4 color = frame.color(pixel);
     for (std::size_t c = 0; c < 3; ++c) {
       float& value = image.pixels[pixel][c];
-      value = std::clamp(0.5f + kGain * (color[c] - value), 0.0f, 1.0f);
+      value = std::clamp(0.5f + kGain * (std::clamp(color[c], 0.0f, 1.0f) - value), 0.0f, 1.0f);
     }
   }
   return image;

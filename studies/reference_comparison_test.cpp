@@ -115,8 +115,8 @@ TEST(ReferenceComparison, MapsHaveNames) {
 
 TEST(ReferenceComparison, DifferencePictureIsGreyWhereTheyAgree) {
   Frame frame = grey_frame();
-  frame.colors32[0] = {0, 0, 0, 0};
   frame.colors32[7] = {0.51f, 0.5f, 0.4f, 1};
+  frame.colors32[0] = {-0.5f, 0, 0, 0};  // shown as black
   const Image image = difference_picture(frame, grey_square());
   EXPECT_EQ(image.pixels[0], (std::array<float, 4>{0.5f, 0.5f, 0.5f, 1}));
   EXPECT_NEAR(image.pixels[7][0], 0.66f, 1e-5);

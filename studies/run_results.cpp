@@ -177,6 +177,13 @@ nlohmann::ordered_json timing_json(const sim::Result& timing) {
           {"units_left_out", left_out_json(timing)}};
 }
 
+nlohmann::ordered_json programs_json(const Trace& trace) {
+  Json programs = Json::array();
+  for (const ShaderText& program : trace.programs)
+    programs.push_back({{"name", program.name}, {"slots", slots_of(program)}});
+  return programs;
+}
+
 nlohmann::ordered_json settings_json(const Machine& machine) {
   Json settings = Json::object();
   for (const machine::ParameterValue& parameter : machine::describe(machine))
@@ -198,10 +205,7 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   results["fidelity"] = name(fidelity);
   if (run.seed) results["seed"] = *run.seed;
   results["frames"] = frames_json(run, frame_ends(input.trace).size());
-  results["programs"] = Json::array();
-  for (const ShaderText& program : input.trace.programs) {
-    results["programs"].push_back({{"name", program.name}, {"slots", slots_of(program)}});
-  }
+  results["programs"] = programs_json(input.trace);
   results["units"] = run.timing ? units_json(*run.timing) : Json::array();
   results["units_left_out"] = run.timing ? left_out_json(*run.timing) : Json::array();
   results["counters"] = counters_json(run.rendered.counters);
@@ -210,7 +214,11 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
     results["statistics"] = statistics_json(*run.timing);
     results["roofline"] = json_of(ceilings(machine, *run.timing));
   }
-  if (!run.heat_maps.empty()) results["heat_maps"] = json_of(run.heat_maps);
+  if (!run.heat_maps.empty()) {
+    results["heat_maps"] = json_of(run.heat_maps);
+    if (!run.timing || run.timing->statistics.empty())  // a fidelity that counts nothing in the units
+      for (Json& map : results["heat_maps"]) map.erase("counter");
+  }
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped, input.estimated);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
   if (input.volume) results["volume"] = volume_json(*input.volume);

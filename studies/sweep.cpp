@@ -13,6 +13,7 @@
 #include "studies/own_program.h"
 #include "studies/run_results.h"
 #include "studies/work_cache.h"
+#include "traces/words.h"
 
 namespace splatscope::studies {
 namespace {
@@ -116,7 +117,8 @@ SweptParameter swept_parameter(std::string_view text) {
     if (value.empty())
       throw UserError("--sweep", 0,
                       fmt::format("\"{}\" has an empty value, expected KEY=VALUE,VALUE,...", text));
-    if (!given.insert(unquoted(value)).second)
+    const std::optional<double> number = traces::number_of<double>(value);
+    if (!given.insert(number ? fmt::format("{}", *number) : unquoted(value)).second)
       throw UserError("--sweep", 0,
                       fmt::format("\"{}\" has {} twice, expected each value once", text, value));
   }
@@ -195,6 +197,7 @@ nlohmann::ordered_json results_of(const Sweep& sweep, const Machine& machine, Fi
   Json results = {{"input", sweep.input.name},
                   {"machine", machine.name},
                   {"set", settings_json(machine)},  // for all points
+                  {"programs", programs_json(sweep.input.trace)},
                   {"fidelity", name(fidelity)}};
   if (sweep.seed) results["seed"] = *sweep.seed;
   results["points"] = Json::array();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "studies/run_results.h"
 #include "traces/words.h"
 
 namespace splatscope::studies {
@@ -65,11 +66,28 @@ std::optional<Plot> plot_of(const Sweep& sweep) {
   return plot;
 }
 
+// What is not as the machine and the input have it, at all points.
+std::string changes_text(const Sweep& sweep, const Machine& machine) {
+  const nlohmann::ordered_json settings = settings_json(machine);
+  std::string text;
+  for (const auto& [key, value] : settings.items())
+    text += fmt::format("{} {} = {}", text.empty() ? " At all points" : ",", key, value.get<std::string>());
+  if (!text.empty()) text += ".";
+  for (const std::string& program : sweep.replaced) text += fmt::format(" Another program: {}.", program);
+  return text;
+}
+
 Report report_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity) {
   using enum Report::Align;
-  Report report("splatscope: sweep", fmt::format("{} on machines like {}, fidelity {}.", sweep.input.name,
-                                                 machine.name, name(fidelity)));
-  if (const auto plot = plot_of(sweep)) add_plot(report, *plot);
+  Report report("splatscope: sweep", fmt::format("{} on machines like {}, fidelity {}.{}", sweep.input.name,
+                                                 machine.name, name(fidelity), changes_text(sweep, machine)));
+  if (const auto plot = plot_of(sweep)) {
+    add_plot(report, *plot);
+  } else {
+    report.paragraph(fmt::format(
+        "No curves: they are drawn over numbers of the parameter that was named last, and no more than {}.",
+        kMostCurves));
+  }
   std::vector<Report::Column> columns;
   for (const auto& [key, value] : sweep.points.front().settings) columns.push_back({key, number});
   columns.insert(columns.end(), {{"cycles", number}, {"frames a second", number}, {"bottleneck"}});

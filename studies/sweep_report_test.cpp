@@ -81,6 +81,8 @@ TEST(SweepReport, NoCurveWhereTheyWouldBeTooManyOrValuesAreNoNumbers) {
   }
   words.points.push_back(point({{"memory.fast_clear", "true"}}, {1000}));
   EXPECT_FALSE(plot_of(words));
+  const std::string html = report_of(words, machine::load(machine::kGeForce4), Fidelity::cycle).html();
+  EXPECT_NE(html.find("No curves: "), std::string::npos);
 }
 
 TEST(SweepReport, ThePageAddsTheFramesOfAMachineUp) {
@@ -88,6 +90,19 @@ TEST(SweepReport, ThePageAddsTheFramesOfAMachineUp) {
   EXPECT_NE(html.find("8000"), std::string::npos);
   EXPECT_NE(html.find("vertex0 (50 % busy)"), std::string::npos);
   EXPECT_NE(html.find("image/svg+xml"), std::string::npos);
+}
+
+TEST(SweepReport, ThePageSaysWhatWasChanged) {
+  Machine machine = machine::load(machine::kGeForce4);
+  machine::set(machine, "vertex.threads=1");
+  machine::set(machine, "numbers.frame=half");
+  Sweep sweep = two_by_two();
+  sweep.replaced = {"splat.ps is red.ps"};
+  const std::string html = report_of(sweep, machine, Fidelity::cycle).html();
+  EXPECT_NE(
+      html.find("fidelity cycle. At all points numbers.frame = half, vertex.threads = 1. Another program: "
+                "splat.ps is red.ps."),
+      std::string::npos);
 }
 
 TEST(SweepReport, ThePageDoesWithoutAPlotter) {

@@ -85,6 +85,7 @@ TEST_F(Sweeps, EveryPointIsWhatARunOfItsOwnSays) {
   }
   EXPECT_FALSE(sweep.seed) << "no samples";
   const auto json = results_of(sweep, machine, Fidelity::cycle);
+  EXPECT_EQ(json["programs"], programs_json(trace));
   EXPECT_EQ(json["points"][5]["set"]["vertex.units"], "3");
   EXPECT_EQ(json["points"][5]["set"]["memory.channels"], "4");
 }
@@ -190,6 +191,8 @@ TEST_F(Sweeps, ValuesMayStandInQuotes) {
             "--sweep: vertex.units has the wrong type, expected an integer, 1 to 16");
   EXPECT_EQ(splatscope::error_of([] { swept_parameter("numbers.frame=half,\"half\""); }),
             "--sweep: \"numbers.frame=half,\"half\"\" has \"half\" twice, expected each value once");
+  EXPECT_EQ(splatscope::error_of([] { swept_parameter("clock.core_megahertz=100,1e2"); }),
+            "--sweep: \"clock.core_megahertz=100,1e2\" has 1e2 twice, expected each value once");
 }
 
 TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {

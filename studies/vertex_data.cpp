@@ -80,8 +80,8 @@ Plot slots_plot(const std::vector<VertexDataRow>& rows) {
   return plot;
 }
 
-Plot rate_plot(const std::vector<VertexDataRow>& rows) {
-  Plot plot{.title = "Frame rate against instructions",
+Plot rate_plot(const Plane& plane, const std::vector<VertexDataRow>& rows) {
+  Plot plot{.title = fmt::format("Frame rate against instructions, {0} x {0} surfels", plane.surfels_a_side),
             .x_label = "instruction slots of both passes",
             .y_label = "frames a second"};
   for (const std::string_view machine : kBothMachines) {
@@ -172,7 +172,7 @@ void study_vertex_data(Findings& findings, const Progress& progress) {
     findings.say(fmt::format("{0} x {0} surfels\n", plane.surfels_a_side));
     add_table(findings, plane, rows);
     if (results.empty()) findings.plot("vertex-data-slots", slots_plot(rows));
-    findings.plot(fmt::format("vertex-data-{}", plane.name), rate_plot(rows));
+    findings.plot(fmt::format("vertex-data-{}", plane.name), rate_plot(plane, rows));
     results[std::string(plane.name)] = json_of(rows);
   }
   findings.result("vertex_data", std::move(results));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "model/control_characters.h"
 #include "model/error.h"
 #include "model/isa/opcode.h"
 #include "model/isa/program.h"
@@ -87,6 +88,7 @@ class Checker {
   }
 
   Loaded check_program(const ShaderText& text) const {
+    if (has_control_characters(text.name)) fail("control characters in its name", "a name on one line");
     try {
       const isa::Program program = isa::load(text.text, text.name);
       const bool is_pixel = program.version.kind == isa::ShaderKind::pixel;

@@ -259,6 +259,8 @@ std::vector<Breakage> breakages() {
       {"clear nan", [](Trace& t, Draw&) { std::get<Clear>(t.commands[0]).color[2] = NAN; },
        "clear color is nan"},
       {"clear depth", [](Trace& t, Draw&) { std::get<Clear>(t.commands[0]).depth = 2; }, "clear depth is 2"},
+      {"escape", [](Trace& t, Draw&) { t.programs[1].name = "\x1b[2J.ps"; },
+       "program 1: control characters in its name, expected a name on one line"},
       {"program", [](Trace& t, Draw&) { t.programs[1].text = "ps_1_1\nmov r9, v0\n"; }, "program 1: b.ps:2:"},
       {"pixel as vertex", [](Trace&, Draw& d) { d.vertex_program = 1; }, "program 1 is of the other kind"},
       {"vertex as pixel", [](Trace&, Draw& d) { d.pixel_program = 0; }, "expected a pixel program"},

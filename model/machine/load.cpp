@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 
+#include "model/control_characters.h"
 #include "model/embedded_file.h"
 #include "model/error.h"
 #include "model/input_file.h"
@@ -246,6 +247,8 @@ Machine parse(std::string_view text, std::string_view file) {
     if (key == "base") continue;
     if (key == "title") {
       machine.title = text_of(node, "title", file);
+      if (has_control_characters(machine.title))
+        place_of(node, file).fail("title has control characters, expected text on one line");
       continue;
     }
     const toml::table* group = node.as_table();

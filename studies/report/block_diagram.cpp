@@ -103,11 +103,20 @@ class Diagram {
     return kTop + kRowStep * static_cast<double>(rows_) - (kRowStep - kBoxHeight) / 2;
   }
 
+  bool goes_past(const sim::ChannelUse& channel) const {
+    if (is_numbered(channel.to, "memory")) return false;
+    const std::size_t from = boxes_.at(channel.from).row, to = boxes_.at(channel.to).row;
+    return from + 1 != to && to + 1 != from;
+  }
+
   // Units in rows beside each other are joined straight, others by a way past the pipeline on its left; each
   // client has one line to the memory.
   std::string ways() const {
     std::string out;
     std::map<std::string, std::uint64_t> of_clients;
+    const auto ways_past = static_cast<double>(
+        std::ranges::count_if(timing_.channels, [this](const auto& channel) { return goes_past(channel); }));
+    const double step = std::min(9.0, (kPipelineLeft - 14) / ways_past);  // as the room on the left allows
     double past = kPipelineLeft - 10;
     for (const sim::ChannelUse& channel : timing_.channels) {
       if (is_numbered(channel.to, "memory")) {
@@ -117,7 +126,7 @@ class Diagram {
       const Box &from = boxes_.at(channel.from), &to = boxes_.at(channel.to);
       const std::string what = fmt::format("{} to {}: {} items", channel.from, channel.to, channel.items);
       const bool down = to.row > from.row;
-      if (from.row + 1 == to.row || to.row + 1 == from.row) {
+      if (!goes_past(channel)) {
         const double x = (from.width < to.width ? from : to).middle() + (down ? -5 : 5);
         const double start = down ? from.bottom() : from.top, end = down ? to.top : to.bottom();
         out += way(fmt::format("M{} {}V{}", x, start, end),
@@ -126,7 +135,7 @@ class Diagram {
         const double start = from.top + kBoxHeight * 0.6, end = to.top + kBoxHeight * 0.4;
         out += way(fmt::format("M{} {}H{}V{}H{}", from.left, start, past, end, to.left),
                    head_right(to.left, end), what);
-        past -= 9;
+        past -= step;
       }
     }
     for (const auto& [client, requests] : of_clients) {

@@ -51,6 +51,19 @@ TEST(BlockDiagram, ShowsEachUnitWithItsSharesAndEachChannel) {
   EXPECT_EQ(1u, count(svg, "&lt;odd&gt;: busy"));
 }
 
+// However many pass the pipeline on its left.
+TEST(BlockDiagram, WaysAreInside) {
+  sim::Result many = result();
+  for (int i = 6; i < 16; ++i) many.units.push_back(books("vertex" + std::to_string(i), 40));
+  for (int i = 0; i < 16; ++i) many.channels.push_back({"vertex" + std::to_string(i), "raster", 1});
+  const std::string svg = block_diagram(many);
+  const std::regex past(R"re(d="M[\d.]+ [\d.]+H(-?[\d.]+)V)re");
+  std::size_t ways = 0;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), past), end; it != end; ++it, ++ways)
+    EXPECT_GT(std::stod((*it)[1]), 0);
+  EXPECT_GE(ways, 16u);
+}
+
 // The bar of a unit is as long as its box allows, whatever the shares; nothing lies over anything else.
 TEST(BlockDiagram, BoxesAreApartAndInside) {
   const std::string svg = block_diagram(result());

@@ -54,8 +54,11 @@ void add_times(Report& report, const sim::Result& timing) {
                     fmt::format("{:.2f}", timing.frames_per_second(cycles))});
   }
   const sim::Result::Bottleneck bottleneck = timing.bottleneck();
-  report.table(fmt::format("Time. {} was the busiest unit, {:.0f} % of the cycles.", bottleneck.unit,
-                           100 * timing.share(bottleneck.busy)),
+  const std::string busiest =
+      bottleneck.vertex_units > 1
+          ? fmt::format("Each of the {} vertex units was busy at least", bottleneck.vertex_units)
+          : bottleneck.unit + " was the busiest unit,";
+  report.table(fmt::format("Time. {} {:.0f} % of the cycles.", busiest, 100 * timing.share(bottleneck.busy)),
                {{"frame", number}, {"core cycles", number}, {"ms", number}, {"frames/s", number}}, rows);
 }
 

@@ -26,6 +26,7 @@ void reproduce_figure11(Findings& findings, const Progress& progress) {
       single_surface_reference(traces::load_scene("checkerboard-ewa-per-pixel"));
   std::vector<Findings::Comparison> pictures;
   auto list = nlohmann::ordered_json::array();
+  std::string text;
   for (const auto& [algorithm, caption] : kParts) {
     const double done = static_cast<double>(pictures.size()) / std::size(kParts);
     const auto scene = traces::load_scene(fmt::format("checkerboard-{}", algorithm));
@@ -33,11 +34,11 @@ void reproduce_figure11(Findings& findings, const Progress& progress) {
         draw_checkerboard(scene, reference, machine, part(progress, done, done + 1.0 / std::size(kParts)));
     pictures.push_back({fmt::format("fig11-{}", algorithm), std::string(caption), picture_of(drawn.frame),
                         picture_of(reference), difference_picture(drawn.frame, reference)});
-    findings.say(
-        fmt::format("fig11 {:<15} {:>5.1f} dB against EWA in double precision\n", algorithm, drawn.psnr));
+    text += fmt::format("fig11 {:<15} {:>5.1f} dB against EWA in double precision\n", algorithm, drawn.psnr);
     list.push_back({{"algorithm", algorithm}, {"psnr_decibels", drawn.psnr}});
   }
   findings.report().heading("Fig. 11: the three algorithms");
+  findings.text(text);
   findings.compare(pictures);
   findings.result("fig11", list);
 }

@@ -43,6 +43,7 @@ void reproduce_figure12(Findings& findings, const Progress& progress) {
   const std::vector<Shown> models = shown_models();
   std::vector<Findings::Comparison> pictures;
   auto list = nlohmann::ordered_json::array();
+  std::string text;
   for (const auto& [model, what] : models) {
     const double done = static_cast<double>(pictures.size()), all = static_cast<double>(models.size());
     const traces::Scene scene = traces::parse_scene("[surfels]\n" + model.toml, model.name + ".toml");
@@ -52,10 +53,10 @@ void reproduce_figure12(Findings& findings, const Progress& progress) {
                         fmt::format("{} ({}), {} surfels", model.name, what, scene.surfels.size()),
                         picture_of(drawn.frame), picture_of(drawn.reference),
                         difference_picture(drawn.frame, drawn.reference)});
-    findings.say(fmt::format(
+    text += fmt::format(
         "fig12 {:<11} {:<20} {:>7} surfels  {:>5.1f} dB  {:>5.1f} dB off edges  {:>2} holes  {:>3} "
         "rounded to black\n",
-        model.name, what, scene.surfels.size(), c.psnr, c.psnr_off_edges, c.holes, c.rounded_to_black));
+        model.name, what, scene.surfels.size(), c.psnr, c.psnr_off_edges, c.holes, c.rounded_to_black);
     list.push_back({{"model", model.name},
                     {"what", what},
                     {"surfels", scene.surfels.size()},
@@ -65,6 +66,7 @@ void reproduce_figure12(Findings& findings, const Progress& progress) {
                     {"rounded_to_black", c.rounded_to_black}});
   }
   findings.report().heading("Fig. 12: models with textures of high frequency");
+  findings.text(text);
   findings.compare(pictures);
   findings.result("fig12", list);
 }

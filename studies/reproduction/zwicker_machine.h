@@ -16,6 +16,7 @@ namespace splatscope::studies {
 // A machine's picture of a volume against the software's with the same sheets, and its time.
 struct VolumeFrame {
   std::string machine;
+  double psnr = 0;     // dB, over the pixels that the volume covers
   double seconds = 0;  // of a frame
   Rate rate;
 };
@@ -24,11 +25,10 @@ struct VolumeRow {
   std::string name, stand_in;
   glm::ivec3 size{};
   std::size_t splats = 0, flat = 0, sheets = 0, vertex_bytes = 0;
-  double psnr_8_bits = 0;       // of the GeForce4, dB, over the pixels that the volume covers
-  double psnr_float = 0;        // the same with floats everywhere
+  double psnr_float = 0;        // dB, with floats everywhere
   double software_seconds = 0;  // of this host: kernels/reference/volume/fast_volume.h
   std::vector<VolumeFrame> frames;
-  Image software, machine;  // the latter of the GeForce4
+  Image software, machine;  // the latter of the last of them
 };
 
 // On both machines by `fidelity`, which gives times.
@@ -38,7 +38,6 @@ VolumeRow volume_row(const VolumeModel& model, Fidelity fidelity, const Progress
 // each contribution to 8 bits. Texture and vertices are as on the machine.
 struct FormatRow {
   FrameFormat format{};
-  double psnr = 0;  // of the GeForce4, dB
   std::vector<VolumeFrame> frames;
 };
 std::vector<FormatRow> format_rows(const VolumeModel& model, Fidelity fidelity,

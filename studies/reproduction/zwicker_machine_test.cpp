@@ -14,10 +14,12 @@ TEST(ZwickerMachine, MachinesDrawWhatTheSoftwareDoesWithTheSameSheets) {
     EXPECT_GT(row.splats, 1000u);
     EXPECT_GT(row.flat, 0u);
     EXPECT_LT(row.flat, row.splats);
-    EXPECT_GT(row.psnr_8_bits, 36);  // 3 dB less than measured; the measure asks for 30
     EXPECT_GT(row.psnr_float, 50);
     ASSERT_EQ(row.frames.size(), 2u);
-    for (const VolumeFrame& frame : row.frames) EXPECT_GT(frame.seconds, 0);
+    for (const VolumeFrame& frame : row.frames) {
+      EXPECT_GT(frame.psnr, 36) << frame.machine;  // 3 dB less than measured; the measure asks for 30
+      EXPECT_GT(frame.seconds, 0);
+    }
   }
 }
 
@@ -26,9 +28,10 @@ TEST(ZwickerMachine, WiderFormatsAreNearerAndNoFaster) {
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows.front().format, FrameFormat::unorm8);
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    EXPECT_GT(rows[i].psnr, rows[0].psnr + 6) << i << ": two more bits";
-    for (std::size_t m = 0; m < 2; ++m)
+    for (std::size_t m = 0; m < 2; ++m) {
+      EXPECT_GT(rows[i].frames[m].psnr, rows[0].frames[m].psnr + 6) << i << ": two more bits";
       EXPECT_GE(rows[i].frames[m].seconds, 0.999 * rows[0].frames[m].seconds) << i << ": larger cache lines";
+    }
   }
 }
 

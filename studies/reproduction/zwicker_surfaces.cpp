@@ -109,6 +109,7 @@ void reproduce_zwicker_figure17(Findings& findings, const Progress& progress) {
   std::vector<Findings::Picture> pictures;
   auto list = nlohmann::ordered_json::array();
   constexpr const char* kParts[] = {"a", "b", "c"};
+  std::string text;
   for (const PublishedModel& published : kPublished) {
     const SurfaceModel model = published.make(published.points, 512);
     const kernels::LayeredPicture picture = draw_layered(model, kLayers);
@@ -117,11 +118,11 @@ void reproduce_zwicker_figure17(Findings& findings, const Progress& progress) {
     const auto all =
         static_cast<double>(outcomes.added + outcomes.founded + outcomes.replaced + outcomes.dropped);
     const auto percent = [&](std::size_t count) { return 100 * static_cast<double>(count) / all; };
-    findings.say(fmt::format(
+    text += fmt::format(
         "zwicker-fig17{} {:<12} {:>7} surfels; of {:.0f} M contributions {:.1f} % added to a layer, {:.1f} % "
         "founded one, {:.2f} % replaced the furthest, {:.2f} % dropped\n",
         part, model.name, model.surfels.size(), all / 1e6, percent(outcomes.added), percent(outcomes.founded),
-        percent(outcomes.replaced), percent(outcomes.dropped)));
+        percent(outcomes.replaced), percent(outcomes.dropped));
     pictures.push_back({fmt::format("zwicker-fig17{}", part),
                         fmt::format("{}: {}, {} surfels", model.name, model.stand_in, model.surfels.size()),
                         opaque_image(picture.width, picture.height, picture.pixels)});
@@ -136,6 +137,7 @@ void reproduce_zwicker_figure17(Findings& findings, const Progress& progress) {
     tell(progress, pictures.size(), std::size(kPublished));
   }
   findings.report().heading("Zwicker 2002, Fig. 17: EWA surface splatting");
+  findings.text(text);
   findings.pictures(pictures);
   findings.result("zwicker_fig17", list);
 }
