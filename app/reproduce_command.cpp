@@ -22,10 +22,10 @@ void add_reproduce_command(CLI::App& app, Invocation& invocation) {
     const auto chosen = studies::choose(studies::reproductions(), "reproduce", options->names);
     studies::Findings findings(
         options->out, "splatscope: published results made again",
-        "Ren, Pfister and Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines; by "
-        "\"Zwicker 2002\", Zwicker, Pfister, van Baar and Gross, EWA Splatting (2002), in software and, what "
-        "it "
-        "wished for, on these machines.");
+        "Ren, Pfister and Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines; and "
+        "Zwicker, Pfister, van Baar and Gross, EWA Splatting (2002, here: Zwicker 2002), in software and on "
+        "these "
+        "machines.");
     ProgressBar progress("simulating", invocation.quiet);
     studies::run_studies(chosen, findings, progress.callback());
   });

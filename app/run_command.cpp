@@ -43,7 +43,7 @@ void print_weights(const traces::RecordCounts& counts) {
   std::cout << fmt::format(
       "  weights{}: {} captured, {} of them a vertex; {} seen from no view, {} outside "
       "of the box\n",
-      all > counts.scene_surfels ? " of all levels" : "", counts.weights_captured, counts.weights_at_edges,
+      all != counts.scene_surfels ? " of all levels" : "", counts.weights_captured, counts.weights_at_edges,
       counts.weights_by_default, counts.weights_outside_box);
   if (counts.weights_captured == 0 && counts.weights_by_default > 0)
     std::cout

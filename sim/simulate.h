@@ -64,7 +64,7 @@ struct Result {
   struct Bottleneck {
     std::string unit;
     Cycle busy = 0;
-    std::size_t vertex_units = 0;  // of which it is the least; 0: of the unit itself
+    std::size_t vertex_units = 0;  // not 0: `busy` is that of the least busy of so many
   };
   // The unit that was busy for the largest share of the run. Vertex units, of which the first that is free
   // takes a vertex, count together, as busy as the least busy of them, under the name of the busiest. A

@@ -100,7 +100,7 @@ void study_saving(Findings& findings, const Progress& progress) {
       tell(progress, ++done, std::size(kTable1) * std::size(kBothMachines));
     }
   }
-  findings.say(
+  findings.text(
       fmt::format("leaving out the units that no draw uses saves of the time of the timing\n"
                   "cycle       {:>10.1f} %  Table 1\n"
                   "referee     {:>10.1f} %  {} on {}\n",

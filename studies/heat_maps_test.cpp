@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "studies/run.h"
+#include "studies/run_results.h"
 
 namespace splatscope::studies {
 namespace {
@@ -45,6 +46,11 @@ TEST(HeatMaps, SumsAreTheCounters) {
       EXPECT_GE(image.width, 70);
       EXPECT_LT(image.width, 70 + map.scale);
     }
+    Input input;
+    input.trace = trace;
+    const auto maps = results_of(input, machine, Fidelity::cycle, run)["heat_maps"];
+    EXPECT_EQ(maps[0]["counter"], "fragments");
+    EXPECT_EQ(maps[2]["counter"], "texture.lookups");
     // The picture and the time are those of a run without.
     const FrameRun plain = run_frame(trace, machine, Fidelity::cycle);
     EXPECT_EQ(plain.timing->event_hash, run.timing->event_hash);
@@ -54,6 +60,9 @@ TEST(HeatMaps, SumsAreTheCounters) {
         run_frame(trace, machine, Fidelity::functional, {}, {}, {.heat_maps = &counted});
     EXPECT_FALSE(functional.timing);
     ASSERT_EQ(3u, functional.heat_maps.size());
+    const auto uncounted = results_of(input, machine, Fidelity::functional, functional)["heat_maps"];
+    EXPECT_EQ(uncounted[0]["counter"], "fragments");
+    EXPECT_FALSE(uncounted[2].contains("counter")) << "no unit counted";
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_EQ(run.heat_maps[i].image.pixels, functional.heat_maps[i].image.pixels);
   }

@@ -23,7 +23,6 @@ TEST(Plot, DrawsEachSeriesUnderItsName) {
     EXPECT_NE(std::string::npos, svg.find(text)) << text;
 }
 
-// gnuplot warns of axes without extent.
 // Of five points two make a curve and two another.
 TEST(Plot, ACurveEndsWhereAValueIsMissing) {
   const auto drawing = [](double middle) {
@@ -39,6 +38,7 @@ TEST(Plot, ACurveEndsWhereAValueIsMissing) {
   EXPECT_EQ(moves(drawing(3)) + 1, moves(drawing(std::nan(""))));
 }
 
+// gnuplot warns of axes without extent.
 TEST(Plot, AWarningIsNoPartOfTheDrawing) {
   const Plot point{.title = "one", .x_label = "x", .y_label = "y", .series = {{"still", {2, 2}, {3, 3}}}};
   const std::string svg = svg_of(point);

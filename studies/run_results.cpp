@@ -106,6 +106,14 @@ Json statistics_json(const sim::Result& timing) {
   return out;
 }
 
+// Statistics of units ("texture.lookups") are there where the unit is, in a fidelity that counts in units.
+bool is_counted(const std::string& counter, const FrameRun& run) {
+  if (counter.find('.') == std::string::npos) return true;
+  return run.timing && std::ranges::any_of(run.timing->statistics, [&](const sim::UnitStatistic& statistic) {
+           return statistic.unit_name + "." + statistic.name == counter;
+         });
+}
+
 // A figure that no file can hold, an infinite PSNR, is null.
 Json reference_json(const Comparison& c) {
   return {{"psnr_decibels", c.psnr},
@@ -216,8 +224,8 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
   }
   if (!run.heat_maps.empty()) {
     results["heat_maps"] = json_of(run.heat_maps);
-    if (!run.timing || run.timing->statistics.empty())  // a fidelity that counts nothing in the units
-      for (Json& map : results["heat_maps"]) map.erase("counter");
+    for (Json& map : results["heat_maps"])
+      if (!is_counted(map["counter"].get<std::string>(), run)) map.erase("counter");
   }
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped, input.estimated);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);

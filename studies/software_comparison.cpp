@@ -113,8 +113,8 @@ void study_software(Findings& findings, const Progress& progress) {
   const std::vector<SoftwareRow> rows =
       software_rows(scene, std::array{256, 512, 1024}, 5, Fidelity::throughput, part(progress, 0.2, 1));
   findings.report().heading("Software against hardware: section 8");
-  findings.say(fmt::format("{} points; software on {} threads of this host\n", scene.surfels.size(),
-                           oneapi::tbb::this_task_arena::max_concurrency()));
+  findings.text(fmt::format("{} points; software on {} threads of this host\n", scene.surfels.size(),
+                            oneapi::tbb::this_task_arena::max_concurrency()));
   add_table(findings, rows);
   findings.plot("software", frame_plot(rows));
   findings.result("software", json_of(rows));

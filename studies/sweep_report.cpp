@@ -21,6 +21,17 @@ std::string settings_text(const SweepPoint& point, std::size_t count) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+// What is not as the machine and the input have it, at all points.
+std::string changes_text(const Sweep& sweep, const Machine& machine) {
+  const nlohmann::ordered_json settings = settings_json(machine);
+  std::string text;
+  for (const auto& [key, value] : settings.items())
+    text += fmt::format("{} {} = {}", text.empty() ? " At all points" : ",", key, value.get<std::string>());
+  if (!text.empty()) text += ".";
+  for (const std::string& program : sweep.replaced) text += fmt::format(" Changed: {}.", program);
+  return text;
+}
+
 }  // namespace
 
 std::string csv_of(const Sweep& sweep) {
@@ -64,17 +75,6 @@ std::optional<Plot> plot_of(const Sweep& sweep) {
     curve.y.insert(curve.y.begin() + at, point.rate.fps);
   }
   return plot;
-}
-
-// What is not as the machine and the input have it, at all points.
-std::string changes_text(const Sweep& sweep, const Machine& machine) {
-  const nlohmann::ordered_json settings = settings_json(machine);
-  std::string text;
-  for (const auto& [key, value] : settings.items())
-    text += fmt::format("{} {} = {}", text.empty() ? " At all points" : ",", key, value.get<std::string>());
-  if (!text.empty()) text += ".";
-  for (const std::string& program : sweep.replaced) text += fmt::format(" Another program: {}.", program);
-  return text;
 }
 
 Report report_of(const Sweep& sweep, const Machine& machine, Fidelity fidelity) {

@@ -97,11 +97,11 @@ TEST(SweepReport, ThePageSaysWhatWasChanged) {
   machine::set(machine, "vertex.threads=1");
   machine::set(machine, "numbers.frame=half");
   Sweep sweep = two_by_two();
-  sweep.replaced = {"splat.ps is red.ps"};
+  sweep.replaced = {"program splat.ps replaced by red.ps (1 slots, was 2)"};
   const std::string html = report_of(sweep, machine, Fidelity::cycle).html();
   EXPECT_NE(
-      html.find("fidelity cycle. At all points numbers.frame = half, vertex.threads = 1. Another program: "
-                "splat.ps is red.ps."),
+      html.find("fidelity cycle. At all points numbers.frame = half, vertex.threads = 1. Changed: program "
+                "splat.ps replaced by red.ps (1 slots, was 2)."),
       std::string::npos);
 }
 

@@ -56,6 +56,7 @@ TEST(CommandLine, RunWritesItsResults) {
   const std::string report = text_of(folder.path() / "a/b/report.html");
   EXPECT_NE(report.find("Left out: texture, pixel and blend in 1 of 2 draws, as they write no colour."),
             std::string::npos);
+  EXPECT_NE(report.find("Time. Each of the 2 vertex units was busy at least "), std::string::npos);
 }
 
 // A script that reads the results can tell what was run.

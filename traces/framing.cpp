@@ -87,7 +87,7 @@ DepthRange depths_of(std::span<const Surfel> surfels, const Splatting& splatting
   for (const Surfel& s : surfels) {
     const glm::dvec3 ray = glm::dvec3(s.position) - camera.eye;
     const double depth = glm::dot(ray, ahead);
-    double reach = 0;
+    double reach = quad_reach(splatting, s.radius, 0);  // behind the eye, where no pixel is
     if (depth > 0) {
       const glm::dvec3 normal(s.normal);
       const double cosine = std::max(kEdgeOnCosine, std::abs(glm::dot(normal, ray)) / glm::length(ray));

@@ -33,9 +33,9 @@ struct DepthRange {
   }
 };
 
-// Of the quads of both passes, of one surfel at least: 2 radii from each at the least, low-pass filters as
-// far as edge-on ones count (splat_reach.h), a tenth of all that as room on either side, and z_t, but no more
-// than what lies between: beyond it the visibility pass hides nothing. Normals are of unit length.
+// Of the quads of both passes of at least one surfel: each reaches 2 radii at the least, and low-pass filters
+// count as if they were seen at kEdgeOnCosine at most. A tenth of the range is room on either side; behind it
+// z_t, but no more than the range: moved further, a quad hides nothing. Normals are of unit length.
 DepthRange depths_of(std::span<const Surfel> surfels, const Splatting& splatting, const FrameSize& frame,
                      const Camera& camera);
 

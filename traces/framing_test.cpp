@@ -110,10 +110,9 @@ TEST(Framing, CornersOfASplatLieWhereItsDomainEnds) {
   EXPECT_NEAR(corner_reach(splatting) * surfel.radius, std::numbers::sqrt2 * half_side, 1e-12);
 }
 
-Splatting splatting_of(double depth_offset = 0, double sigma = 1) {
+Splatting splatting_of(double depth_offset = 0) {
   Splatting splatting;
-  splatting.cutoff = 1;
-  splatting.sigma = sigma;
+  splatting.cutoff = splatting.sigma = 1;
   splatting.depth_offset = depth_offset;
   return splatting;
 }
@@ -163,7 +162,7 @@ TEST(Framing, ThePlanesAreTwoRadiiFromSmallSplats) {
   camera.eye = {0, 0, -9};
   const std::vector<Surfel> one{{{0, 0, 0}, {0, 0, -1}, 0.5f, {}}};
   frame_camera(one, {64, 64}, {.eye = true}, camera);
-  place_planes(depths_of(one, splatting_of(0, 0.5), {64, 64}, camera), {}, camera);
+  place_planes(depths_of(one, splatting_of(), {64, 64}, camera), {}, camera);
   EXPECT_DOUBLE_EQ(camera.near, 8 - 0.2);
   EXPECT_DOUBLE_EQ(camera.far, 10 + 0.2);
 }
@@ -174,9 +173,9 @@ TEST(Framing, ThePlanesOfAnEyeInsideAreNotTooFarApart) {
   camera.target = {0, 0, 1};
   const std::vector<Surfel> around{{{0, 0, -5}, {0, 0, 1}, 0.5f, {}}, {{0, 0, 9}, {0, 0, -1}, 0.5f, {}}};
   frame_camera(around, {64, 64}, {.eye = true, .target = true}, camera);
-  place_planes(depths_of(around, splatting_of(0, 0.5), {64, 64}, camera), {}, camera);
-  EXPECT_DOUBLE_EQ(camera.far, 10 + 1.6);
-  EXPECT_DOUBLE_EQ(camera.near, 0.0116);
+  place_planes(depths_of(around, splatting_of(), {64, 64}, camera), {}, camera);
+  EXPECT_DOUBLE_EQ(camera.far, 10 + 0.1 * (10 + 5 + 1.5));
+  EXPECT_DOUBLE_EQ(camera.near, 1e-3 * camera.far);
 }
 
 }  // namespace

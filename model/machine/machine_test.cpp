@@ -84,6 +84,9 @@ TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
   EXPECT_TRUE(message_of("title = \"a\"\n[vertex\n").starts_with("m.toml:2: "));
   EXPECT_EQ(message_of("base = \"radeon-8500\"\ntitle = \"\\u001b[2J\"\n"),
             "m.toml:2: title has control characters, expected text on one line");
+  EXPECT_EQ(message_of("base = \"radeon-8500\"\ntitle = \"\\u009b2J\"\n"),
+            "m.toml:2: title has control characters, expected text on one line");
+  EXPECT_EQ(message_of("base = \"radeon-8500\"\ntitle = \"\\u00e9\"\n"), "no error");
   EXPECT_EQ(message_of("base = \"voodoo\"\n"),
             "m.toml:1: no machine \"voodoo\", expected geforce4-ti4400 or radeon-8500");
 }

@@ -116,7 +116,7 @@ class Diagram {
     std::map<std::string, std::uint64_t> of_clients;
     const auto ways_past = static_cast<double>(
         std::ranges::count_if(timing_.channels, [this](const auto& channel) { return goes_past(channel); }));
-    const double step = std::min(9.0, (kPipelineLeft - 14) / ways_past);  // as the room on the left allows
+    const double step = std::min(9.0, (kPipelineLeft - 14) / std::max(1.0, ways_past));  // as there is room
     double past = kPipelineLeft - 10;
     for (const sim::ChannelUse& channel : timing_.channels) {
       if (is_numbered(channel.to, "memory")) {

@@ -145,7 +145,7 @@ void reproduce_zwicker_figure17(Findings& findings, const Progress& progress) {
 void reproduce_zwicker_table1(Findings& findings, const Progress& progress) {
   const std::vector<SurfaceRow> rows = surface_rows(1, 3, progress);
   findings.report().heading("Zwicker 2002, Table I: software surface splatting");
-  findings.say(
+  findings.text(
       fmt::format("zwicker-table1: software on {} threads of this host; published: a 1.1 GHz Athlon\n",
                   oneapi::tbb::this_task_arena::max_concurrency()));
   add_table(findings, rows);

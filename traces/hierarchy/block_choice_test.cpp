@@ -149,7 +149,7 @@ TEST(BlockChoice, WhatIsFarIsDrawnCoarsely) {
   for (const double distance : {0.2, 4.0, 16.0, 64.0}) {
     scene.camera.eye = scene.camera.target + distance * ray;
     place_planes(scene);
-    // Through the nearest surfel: the near plane cuts boxes.
+    // Through the nearest surfel, where it is before the eye: the near plane cuts boxes.
     const kernels::View view = view_of(scene.camera, scene.frame);
     scene.camera.near = view.camera_space(glm::dvec3(scene.surfels.front().position)).z;
     for (const Surfel& surfel : scene.surfels)
