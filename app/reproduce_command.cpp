@@ -24,8 +24,7 @@ void add_reproduce_command(CLI::App& app, Invocation& invocation) {
         options->out, "splatscope: published results made again",
         "Ren, Pfister and Zwicker, Object Space EWA Surface Splatting (2002), on the simulated machines; and "
         "Zwicker, Pfister, van Baar and Gross, EWA Splatting (2002, here: Zwicker 2002), in software and on "
-        "these "
-        "machines.");
+        "these machines.");
     ProgressBar progress("simulating", invocation.quiet);
     studies::run_studies(chosen, findings, progress.callback());
   });

@@ -107,8 +107,8 @@ void place_planes(const DepthRange& depths, const CameraKeys& given, Camera& cam
   if (!given.near) camera.near = std::max(depths.nearest, kClosest * camera.far);
 }
 
-void place_planes(Scene& scene) {
-  place_planes(depths_of(scene.surfels, scene.splatting, scene.frame, scene.camera), {}, scene.camera);
+void place_planes(Scene& scene, const CameraKeys& given) {
+  place_planes(depths_of(scene.surfels, scene.splatting, scene.frame, scene.camera), given, scene.camera);
 }
 
 }  // namespace splatscope::traces

@@ -43,7 +43,7 @@ DepthRange depths_of(std::span<const Surfel> surfels, const Splatting& splatting
 // at a thousandth of the far one's distance at the least. A key that is given stays.
 void place_planes(const DepthRange& depths, const CameraKeys& given, Camera& camera);
 
-// Both of them anew, where the frame or the eye of a scene with surfels has changed.
-void place_planes(Scene& scene);
+// The same of a scene with surfels; without keys both of them anew, where its frame or its eye has changed.
+void place_planes(Scene& scene, const CameraKeys& given = {});
 
 }  // namespace splatscope::traces

@@ -50,12 +50,10 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   scene.mesh = surfels.mesh;
   scene.files.insert(scene.files.end(), surfels.files.begin(), surfels.files.end());
   scene.splatting.depth_offset = settings.depth_offset > 0 ? settings.depth_offset : surfels.average_spacing;
-  settings.camera = surfels.camera;
-  if (!plane && !scene.surfels.empty())
-    place_planes(depths_of(scene.surfels, scene.splatting, scene.frame, settings.camera),
-                 settings.camera_given, settings.camera);
+  scene.camera = surfels.camera;
+  if (!plane && !scene.surfels.empty()) place_planes(scene, settings.camera_given);
+  settings.camera = scene.camera;
   check_camera(settings, file.string());
-  scene.camera = settings.camera;
   if (!(scene.splatting.gamma > 0)) scene.splatting.gamma = suitable_gamma(scene.surfels, scene.splatting);
   return scene;
 }
