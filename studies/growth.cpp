@@ -92,6 +92,26 @@ double log_log_slope(const std::vector<double>& x, const std::vector<double>& y)
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
+FixedAndLinear fixed_and_linear(const std::vector<double>& x, const std::vector<double>& y) {
+  double uu = 0, uv = 0, vv = 0, u_sum = 0, v_sum = 0;  // of fixed u + linear v = 1
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = 1 / y[i], v = x[i] / y[i];
+    uu += u * u;
+    uv += u * v;
+    vv += v * v;
+    u_sum += u;
+    v_sum += v;
+  }
+  FixedAndLinear fit;
+  fit.fixed = (u_sum * vv - v_sum * uv) / (uu * vv - uv * uv);
+  fit.linear = (v_sum - fit.fixed * uv) / vv;
+  if (fit.fixed < 0) fit = {0, v_sum / vv};
+  if (fit.linear < 0) fit = {u_sum / uu, 0};
+  for (std::size_t i = 0; i < x.size(); ++i)
+    fit.worst = std::max(fit.worst, std::abs(fit.fixed + fit.linear * x[i] - y[i]) / y[i]);
+  return fit;
+}
+
 std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& progress) {
   const Machine machine = machine::load(machine::kGeForce4);
   double all = 0, done = 0;
@@ -110,12 +130,12 @@ void add_growth_report(Findings& findings, std::span<const GrowthRow> rows) {
   using enum Report::Align;
   auto results = nlohmann::ordered_json::object();
   std::vector<Report::Column> columns{{"surfels", number}};
-  std::vector<std::vector<std::string>> cells(rows.size() + 1);
+  std::vector<std::vector<std::string>> cells(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     cells[i].push_back(fmt::format("{}", rows[i].surfels));
     results["surfels"].push_back(rows[i].surfels);
   }
-  cells.back().push_back("slope");
+  std::vector<std::string> slopes{"slope"}, fixed{"fixed"}, linear{"per 1000"}, worst{"off by, %"};
   Plot plot{.title = "Growth of a frame",
             .x_label = "surfels",
             .y_label = "seconds or megabytes",
@@ -128,9 +148,18 @@ void add_growth_report(Findings& findings, std::span<const GrowthRow> rows) {
     plot.series.push_back(series);
     const double slope = log_log_slope(series.x, series.y);
     for (std::size_t i = 0; i < rows.size(); ++i) cells[i].push_back(fmt::format("{:.3f}", series.y[i]));
-    cells.back().push_back(fmt::format("{:.2f}", slope));
-    results["measures"][series.name] = {{"values", series.y}, {"log_log_slope", slope}};
+    slopes.push_back(fmt::format("{:.2f}", slope));
+    const FixedAndLinear fit = fixed_and_linear(series.x, series.y);
+    fixed.push_back(fmt::format("{:.3f}", fit.fixed));
+    linear.push_back(fmt::format("{:.5f}", 1000 * fit.linear));
+    worst.push_back(fmt::format("{:.0f}", 100 * fit.worst));
+    results["measures"][series.name] = {{"values", series.y},
+                                        {"log_log_slope", slope},
+                                        {"fixed", fit.fixed},
+                                        {"per_surfel", fit.linear},
+                                        {"worst_fraction", fit.worst}};
   }
+  cells.insert(cells.end(), {slopes, fixed, linear, worst});
   findings.report().heading("Growth with the number of surfels");
   findings.table("Planes with four pixels a surfel, each time the least of some runs.", columns, cells);
   findings.plot("growth", plot);

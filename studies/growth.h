@@ -23,6 +23,13 @@ std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& p
 // line.
 double log_log_slope(const std::vector<double>& x, const std::vector<double>& y);
 
+// fixed + linear * x, both not below 0: the line through the points, all above 0, that is off by the least
+// sum of squared fractions of them. `worst`: the largest of these fractions.
+struct FixedAndLinear {
+  double fixed = 0, linear = 0, worst = 0;
+};
+FixedAndLinear fixed_and_linear(const std::vector<double>& x, const std::vector<double>& y);
+
 // A table, a plot and figures. A measure that is not above 0 in every row, such as memory of which the system
 // does not tell, has no power law and is left out.
 void add_growth_report(Findings& findings, std::span<const GrowthRow> rows);

@@ -18,6 +18,23 @@ TEST(Growth, TheSlopeIsThatOfThePowerLaw) {
               1e-12);
 }
 
+TEST(Growth, AFixedPartAndALinearOneAreFound) {
+  const std::vector<double> x{10, 100, 1000};
+  const FixedAndLinear exact = fixed_and_linear(x, {25, 70, 520});  // 20 + x / 2
+  EXPECT_NEAR(exact.fixed, 20, 1e-9);
+  EXPECT_NEAR(exact.linear, 0.5, 1e-12);
+  EXPECT_NEAR(exact.worst, 0, 1e-12);
+  // What grows faster has no fixed part below 0, and what shrinks no linear one: the best multiple of x, and
+  // the best constant, of 1 : 100 and of 100 : 1.
+  const FixedAndLinear faster = fixed_and_linear({1, 10}, {1, 100});
+  EXPECT_EQ(faster.fixed, 0);
+  EXPECT_NEAR(faster.linear, 1.1 / 1.01, 1e-12);
+  EXPECT_NEAR(faster.worst, 1 - 0.1 * faster.linear, 1e-12);
+  const FixedAndLinear shrinking = fixed_and_linear({1, 10}, {100, 1});
+  EXPECT_EQ(shrinking.linear, 0);
+  EXPECT_NEAR(shrinking.fixed, 1.01 / 1.0001, 1e-12);
+}
+
 TEST(Growth, MoreSurfelsTakeMoreTimeAndMemory) {
   const int sides[] = {20, 120};
   const std::vector<GrowthRow> rows = growth_rows(sides);
@@ -54,8 +71,10 @@ TEST(Growth, AMeasureThatTheSystemDoesNotTellIsLeftOut) {
   findings.write(1);
   const auto measures = nlohmann::json::parse(text_of(folder / "results.json"))["growth"]["measures"];
   EXPECT_EQ(measures.size(), 4u) << measures;
-  for (const char* name : {"functional, s", "sampled, s", "cycle, s", "functional, MB"})
+  for (const char* name : {"functional, s", "sampled, s", "cycle, s", "functional, MB"}) {
     EXPECT_NEAR(measures.at(name)["log_log_slope"].get<double>(), 1, 1e-12) << name;
+    EXPECT_NEAR(measures.at(name)["per_surfel"].get<double>(), 1, 1e-12) << name;
+  }
   EXPECT_EQ(text_of(folder / "report.html").find("trace, MB"), std::string::npos);
 }
 
