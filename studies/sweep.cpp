@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "model/error.h"
 #include "model/processes.h"
@@ -13,7 +14,6 @@
 #include "studies/own_program.h"
 #include "studies/run_results.h"
 #include "studies/work_cache.h"
-#include "traces/words.h"
 
 namespace splatscope::studies {
 namespace {
@@ -27,6 +27,23 @@ struct Group {
   Machine machine;  // one of them
   std::vector<std::size_t> points;
 };
+
+// With values as the machine holds them: +1 and 0x1 are 1. Each is checked, and that none is there twice.
+std::vector<SweptParameter> as_held(const Machine& machine, std::vector<SweptParameter> parameters) {
+  for (auto& [key, values] : parameters) {
+    std::set<std::string> held;
+    for (std::string& value : values) {
+      Machine changed = machine;
+      machine::assign(changed, key + "=" + value, "--sweep");
+      const auto described = machine::describe(changed);
+      const std::string given = std::exchange(
+          value, unquoted(std::ranges::find(described, key, &machine::ParameterValue::name)->value));
+      if (!held.insert(value).second)
+        throw UserError("--sweep", 0, fmt::format("{} has {} twice, expected each value once", key, given));
+    }
+  }
+  return parameters;
+}
 
 std::vector<SweepPoint> combine(const std::vector<SweptParameter>& parameters) {
   std::vector<SweepPoint> points(1);
@@ -52,7 +69,7 @@ Machine machine_of(const Machine& machine, const SweepPoint& point) {
   return changed;
 }
 
-// Of machines whose frames are the same, bit for bit. All values are checked on the way.
+// Of machines whose frames are the same, bit for bit. That values fit together is checked on the way.
 std::vector<Group> group(const Machine& machine, const std::vector<SweepPoint>& points) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -112,16 +129,9 @@ SweptParameter swept_parameter(std::string_view text) {
   }
   if (parameter.key.empty() || equals + 1 == text.size())
     throw UserError("--sweep", 0, fmt::format("\"{}\", expected KEY=VALUE,VALUE,...", text));
-  std::set<std::string> given;
-  for (const std::string& value : parameter.values) {
-    if (value.empty())
-      throw UserError("--sweep", 0,
-                      fmt::format("\"{}\" has an empty value, expected KEY=VALUE,VALUE,...", text));
-    const std::optional<double> number = traces::number_of<double>(value);
-    if (!given.insert(number ? fmt::format("{}", *number) : unquoted(value)).second)
-      throw UserError("--sweep", 0,
-                      fmt::format("\"{}\" has {} twice, expected each value once", text, value));
-  }
+  if (std::ranges::find(parameter.values, "") != parameter.values.end())
+    throw UserError("--sweep", 0,
+                    fmt::format("\"{}\" has an empty value, expected KEY=VALUE,VALUE,...", text));
   return parameter;
 }
 
@@ -149,10 +159,8 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
     throw UserError("--fidelity", 0,
                     "functional has no time to sweep, expected throughput, sampled, cycle or referee");
   Sweep sweep;
-  sweep.points = combine(parameters);
+  sweep.points = combine(as_held(machine, parameters));
   const std::vector<Group> groups = group(machine, sweep.points);
-  for (SweepPoint& point : sweep.points)  // checked as they were given
-    for (auto& [key, value] : point.settings) value = unquoted(value);
   const auto opened = open_input(scene_or_trace);
   std::optional<WorkCache> cache;
   if (options.cache) cache.emplace(*options.cache);

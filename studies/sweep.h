@@ -24,7 +24,7 @@ std::vector<SweptParameter> swept_parameters(const std::vector<std::string>& tex
 
 // One machine of the sweep.
 struct SweepPoint {
-  std::vector<std::pair<std::string, std::string>> settings;  // by parameter
+  std::vector<std::pair<std::string, std::string>> settings;  // by parameter, as the machine holds them
   nlohmann::ordered_json results;  // as `frames`, `units` and `units_left_out` of a run's results
   Rate rate;                       // of all frames
   std::uint64_t cycles = 0;        // the same, and half the width of its 95 % interval (`sampled`; else 0)
