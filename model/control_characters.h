@@ -5,8 +5,8 @@
 
 namespace splatscope {
 
-// Of a trace's program names and a machine's title, which go to a terminal: escape sequences do things there.
-// Those of ASCII, and U+0080 to U+009F in UTF-8.
+// Of a trace's program names and a machine file's texts, which go to a terminal: escape sequences do things
+// there. Those of ASCII, and U+0080 to U+009F in UTF-8.
 inline bool has_control_characters(std::string_view text) {
   unsigned char before = 0;
   return std::ranges::any_of(text, [&](unsigned char c) {

@@ -117,6 +117,15 @@ Machine::Origin origin_without_source(const Place& place) {
   return {"stand-in", fmt::format("{}, without a source", place.file), "", place.line};
 }
 
+std::string text_of(const toml::node& node, std::string_view key, std::string_view file) {
+  if (!node.is_string())
+    place_of(node, file).fail(fmt::format("{} has the wrong type, expected a string", key));
+  std::string text = node.as_string()->get();
+  if (has_control_characters(text))
+    place_of(node, file).fail(fmt::format("{} has control characters, expected text on one line", key));
+  return text;
+}
+
 Machine::Origin read_origin(const toml::table& table, std::string_view name, std::string_view file) {
   Machine::Origin origin = origin_without_source(place_of(table, file));
   for (const auto& [key, node] : table) {
@@ -126,9 +135,7 @@ Machine::Origin read_origin(const toml::table& table, std::string_view name, std
       place.fail(fmt::format("unknown key \"{}\" of {}, expected value, confidence, source or fitted_to",
                              key.str(), name));
     }
-    if (!node.is_string())
-      place.fail(fmt::format("{} of {} has the wrong type, expected a string", key.str(), name));
-    const std::string text = node.as_string()->get();
+    const std::string text = text_of(node, fmt::format("{} of {}", key.str(), name), file);
     if (key == "source") origin.source = text;
     if (key == "fitted_to") origin.fitted_to = text;
     if (key == "confidence") {
@@ -202,12 +209,6 @@ std::string_view stem(std::string_view file) {
   return file.substr(0, file.rfind(".toml"));
 }
 
-std::string text_of(const toml::node& node, std::string_view key, std::string_view file) {
-  if (!node.is_string())
-    place_of(node, file).fail(fmt::format("{} has the wrong type, expected a string", key));
-  return node.as_string()->get();
-}
-
 }  // namespace
 
 std::vector<std::string_view> built_in_names() {
@@ -247,8 +248,6 @@ Machine parse(std::string_view text, std::string_view file) {
     if (key == "base") continue;
     if (key == "title") {
       machine.title = text_of(node, "title", file);
-      if (has_control_characters(machine.title))
-        place_of(node, file).fail("title has control characters, expected text on one line");
       continue;
     }
     const toml::table* group = node.as_table();

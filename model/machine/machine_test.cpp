@@ -87,6 +87,8 @@ TEST(Machine, ErrorsNameTheLineAndWhatWasExpected) {
   EXPECT_EQ(message_of("base = \"radeon-8500\"\ntitle = \"\\u009b2J\"\n"),
             "m.toml:2: title has control characters, expected text on one line");
   EXPECT_EQ(message_of("base = \"radeon-8500\"\ntitle = \"\\u00e9\"\n"), "no error");
+  EXPECT_EQ(message_of("base = \"radeon-8500\"\n[vertex]\nunits = { value = 2, source = \"\\u001b[31m\" }\n"),
+            "m.toml:3: source of vertex.units has control characters, expected text on one line");
   EXPECT_EQ(message_of("base = \"voodoo\"\n"),
             "m.toml:1: no machine \"voodoo\", expected geforce4-ti4400 or radeon-8500");
 }
