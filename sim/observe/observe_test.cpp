@@ -270,6 +270,33 @@ TEST(TimeSeries, NoDataBusIsBusyForLongerThanARow) {
   }
 }
 
+// A value holds from its event to the next: what the buses carried, less what is cut off a per cent.
+TEST(Timeline, TheSharesOfABusAddUpToItsDataClocks) {
+  for (const unsigned seed : kSeeds) {
+    const Observed run = observe(seed, {});
+    const auto end = static_cast<double>(run.result.cycles);
+    std::map<std::string, double> carried, share, since;
+    const auto hold = [&](const std::string& bus, double until) {
+      carried[bus] += share[bus] / 100 * (until - since[bus]);
+      since[bus] = until;
+    };
+    const Json timeline = Json::parse(run.timeline);
+    for (const Json& event : timeline.at("traceEvents")) {
+      const std::string name = event.at("name");
+      if (event.at("ph") != "C" || !name.ends_with(" data bus")) continue;
+      hold(name, event.at("ts"));
+      share[name] = event.at("args").at("% busy");
+    }
+    for (const UnitStatistic& statistic : run.result.statistics) {
+      if (!statistic.unit_name.starts_with("memory") || statistic.name != "data_clocks") continue;
+      const std::string bus = statistic.unit_name + " data bus";
+      hold(bus, end);
+      EXPECT_LE(carried[bus], static_cast<double>(statistic.value) + 1e-6) << "seed " << seed;
+      EXPECT_GE(carried[bus], static_cast<double>(statistic.value) - end / 100) << "seed " << seed;
+    }
+  }
+}
+
 // Cycles that are not visited change nothing: each row is what the referee sees, who visits all of them.
 TEST(TimeSeries, TheRefereeWritesTheSameRows) {
   for (const unsigned seed : kSeeds) {

@@ -152,23 +152,27 @@ void Timeline::booked(const Unit& unit, std::uint32_t book, Cycle from, Cycle un
   write(slice_heads_[unit.number()], from, kSliceMiddle, until - from, slice_tails_[book], from);
 }
 
-void Timeline::count(Counter& counter, std::uint64_t value, Cycle now) {
+void Timeline::count(Counter& counter, std::uint64_t value, Cycle at) {
   if (value == counter.value) return;
   counter.value = value;
-  write(kCounterHead, now, counter.middle, value, "}}", now);
+  write(kCounterHead, at, counter.middle, value, "}}", at);
 }
 
-Cycle Timeline::sample(Cycle now) {
-  if (now > window_.last) return kNever;
-  if (now < next_sample_) return next_sample_;
+// Since the last sample, however long that is: a counter holds its value from a sample on.
+void Timeline::count_buses(Cycle now) {
   for (std::size_t i = 0; i < buses_.size(); ++i) {
     const std::uint64_t clocks = data_clocks(*machine_->memory[i], now);
-    if (now > sampled_at_ && sampled_at_ >= window_.first) {
-      count(buses_[i], 100 * (clocks - data_clocks_[i]) / (now - sampled_at_), now);
-    }
+    if (now > sampled_at_ && sampled_at_ >= window_.first)
+      count(buses_[i], 100 * (clocks - data_clocks_[i]) / (now - sampled_at_), sampled_at_);
     data_clocks_[i] = clocks;
   }
   sampled_at_ = now;
+}
+
+Cycle Timeline::sample(Cycle now) {
+  if (now < next_sample_) return next_sample_;
+  count_buses(now);
+  if (now > window_.last) return next_sample_ = kNever;
   if (now < window_.first) return next_sample_ = window_.first;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     count(channels_[i], machine_->channels[i]->items(), now);
@@ -177,6 +181,7 @@ Cycle Timeline::sample(Cycle now) {
 }
 
 void Timeline::end(const Result& result) {
+  if (next_sample_ != kNever) count_buses(result.cycles);
   room_ = window_.most_bytes;
   const Cycle others_cut_at = std::exchange(cut_at_, kNever);
   Cycle start = 0;

@@ -33,7 +33,7 @@ class Timeline final : public Observer {
  private:
   struct Counter {
     std::string middle;       // of its events, between cycle and value
-    std::uint64_t value = 0;  // of the last sample
+    std::uint64_t value = 0;  // of the last event
   };
 
   // An event: three pieces of text about two numbers.
@@ -43,7 +43,8 @@ class Timeline final : public Observer {
   void write(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
              std::string_view tail, Cycle at);
   bool clip(Cycle& from, Cycle& until) const;
-  void count(Counter& counter, std::uint64_t value, Cycle now);
+  void count(Counter& counter, std::uint64_t value, Cycle at);
+  void count_buses(Cycle now);
   void flush();
 
   std::ostream& out_;
