@@ -152,9 +152,9 @@ void run(const Options& options, bool quiet) {
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::reference_of(opened, *map);
   ProgressBar recording("recording", quiet);
-  auto libraries = std::async(std::launch::async, studies::load_libraries);  // an error: when they are used
+  auto threads = std::async(std::launch::async, studies::start_threads);
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
-  libraries.wait();
+  threads.wait();
   recording.clear();
   const std::vector<std::string> replaced = studies::replace_programs(input.trace, options.machine.programs);
   if (fidelity == studies::Fidelity::sampled || simulates_cycles(fidelity))

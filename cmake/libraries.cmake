@@ -12,6 +12,8 @@ find_package(assimp REQUIRED)
 find_package(Eigen3 REQUIRED)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(systemc REQUIRED IMPORTED_TARGET systemc)
+pkg_check_modules(openexr REQUIRED IMPORTED_TARGET OpenEXR)
+pkg_check_modules(png REQUIRED IMPORTED_TARGET libpng)
 # By pkg-config: OpenImageIO's CMake target names an OpenCV include folder that Debian's package lacks.
 pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)
 find_package(FlatBuffers CONFIG REQUIRED)

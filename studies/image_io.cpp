@@ -7,7 +7,7 @@
 
 #include "model/error.h"
 #include "model/stop.h"
-#include "pictures/codec.h"
+#include "pictures/encode.h"
 #include "traces/output_files.h"
 
 namespace splatscope::studies {
@@ -15,11 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A whole file by the format's ending.
-std::vector<std::byte> encode(const std::string& ending, const pictures::Picture& picture) {
-  std::vector<std::byte> bytes = pictures::codec().encode(ending, picture, [] { return stop_signal != 0; });
+void write_exr(const pictures::Picture& picture, const fs::path& path) {
+  const std::vector<std::byte> bytes = pictures::encode_exr(picture, [] { return stop_signal != 0; });
   stop_if_asked();
-  return bytes;
+  traces::write_file(path, bytes);
 }
 
 pictures::Picture picture_of(const Image& image, std::size_t channels) {
@@ -41,12 +40,8 @@ Image opaque_image(int width, int height, std::span<const glm::dvec4> pixels) {
   return image;
 }
 
-void load_image_library() {
-  pictures::codec();
-}
-
 void write_exr(const Image& image, const fs::path& path) {
-  traces::write_file(path, encode(".exr", picture_of(image, 4)));
+  write_exr(picture_of(image, 4), path);
 }
 
 void write_exr(const GrayImage& image, const fs::path& path, const char* channel) {
@@ -56,7 +51,7 @@ void write_exr(const GrayImage& image, const fs::path& path, const char* channel
                                   .channel = channel,
                                   .values = image.pixels.data(),
                                   .pixel_stride = 1};
-  traces::write_file(path, encode(".exr", picture));
+  write_exr(picture, path);
 }
 
 void write_png(const Image& image, const fs::path& path) {
@@ -64,7 +59,9 @@ void write_png(const Image& image, const fs::path& path) {
 }
 
 std::vector<std::byte> encode_png(const Image& image) {
-  return encode(".png", picture_of(image, 3));
+  std::vector<std::byte> bytes = pictures::encode_png(picture_of(image, 3));
+  stop_if_asked();
+  return bytes;
 }
 
 double psnr(const Image& a, const Image& b, const std::vector<unsigned char>& mask) {

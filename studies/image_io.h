@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-// Pictures as files, and how far two of them are apart. All through OpenImageIO.
+// Pictures as files, and how far two of them are apart.
 namespace splatscope::studies {
 
 // Rows from the top, pixel by pixel, r g b a each; 1 is white. Linear: no gamma is applied anywhere, as on
@@ -38,9 +38,6 @@ struct GrayImage {
   int height = 0;
   std::vector<float> pixels;
 };
-
-// Does now, on any thread, what else the first picture waits for: a fifth of a second of the loader.
-void load_image_library();
 
 // Files appear whole or not at all. Throw UserError where the place cannot be written, std::runtime_error
 // where the library fails.

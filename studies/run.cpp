@@ -177,9 +177,8 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
 
 }  // namespace
 
-void load_libraries() {
+void start_threads() {
   tbb::parallel_for(0, 2, [](int) {});
-  load_image_library();
 }
 
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity, const Progress& progress,

@@ -89,9 +89,8 @@ struct TimingOptions {
 sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                        Fidelity fidelity, const TimingOptions& options = {}, const Progress& progress = {});
 
-// Does now, on any thread, what else the first frame and its picture wait for: oneTBB's threads, and a fifth
-// of a second of the loader for OpenImageIO. Throws std::runtime_error where that cannot be loaded.
-void load_libraries();
+// Starts oneTBB's threads now, from any thread, which else the first frame waits for.
+void start_threads();
 
 // Instruction slots of a program, which is assembled for them.
 int slots_of(const ShaderText& program);

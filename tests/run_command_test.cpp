@@ -327,18 +327,25 @@ TEST(CommandLine, HolesAreSaidWhereNoPixelIsOffEdges) {
   EXPECT_NE(outcome.out.find("pixels inside the silhouette are holes"), std::string::npos) << outcome.out;
 }
 
-// A library of pictures that is not there is told from one that does not load.
-TEST(CommandLine, PicturesWithoutTheirLibraryAreAnError) {
+// Only textures need the library that reads any format. One that is not there is told from one that does not
+// load.
+TEST(CommandLine, TexturesWithoutTheirLibraryAreAnError) {
   const ScratchFolder folder;
   folder.file("small.toml", kSmallScene);
+  folder.file("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
+  folder.file("m.mtl", "newmtl a\nmap_Kd t.png\n");
+  folder.file("t.png", "no picture");
   const std::string program = (folder.path() / "splatscope").string();
   std::filesystem::copy_file(SPLATSCOPE_PROGRAM, program);
-  const std::vector<std::string> run{"run", "small.toml", "--fidelity", "functional", "--out", "o"};
-  const Outcome missing = run_program(run, folder.path(), program);
+  const Outcome plain =
+      run_program({"run", "small.toml", "--fidelity", "functional", "--out", "o"}, folder.path(), program);
+  EXPECT_EQ(plain.status, 0) << plain.error;
+  const std::vector<std::string> sample{"sample", "m.obj", "-n", "10", "-o", "s.ply"};
+  const Outcome missing = run_program(sample, folder.path(), program);
   EXPECT_EQ(missing.status, 1);
   EXPECT_NE(missing.error.find(", expected it beside the program\n"), std::string::npos) << missing.error;
   folder.file("libopen_image_io_module.so", "no library");
-  const Outcome broken = run_program(run, folder.path(), program);
+  const Outcome broken = run_program(sample, folder.path(), program);
   EXPECT_EQ(broken.status, 1);
   EXPECT_NE(broken.error.find("splatscope: OpenImageIO's libraries could not be loaded: "),
             std::string::npos);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "model/error.h"
-#include "pictures/codec.h"
+#include "pictures/decoder.h"
 #include "studies/image_io.h"
 
 // What tests look at pictures by.
@@ -16,7 +16,7 @@ namespace splatscope::studies::testing {
 inline Image read_image(const std::filesystem::path& path) {
   constexpr std::size_t kMost = 16384;  // pixels a side
   std::string why;
-  const auto decoded = pictures::codec().read_floats({path.string()}, 4, kMost, &why);
+  const auto decoded = pictures::decoder().read_floats({path.string()}, 4, kMost, &why);
   if (!decoded && why.empty())
     throw UserError(path.string(), 0, "cannot be read, expected a picture (EXR or PNG)");
   if (!decoded) throw UserError(path.string(), 0, fmt::format("is damaged ({}), expected a picture", why));

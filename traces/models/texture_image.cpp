@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "pictures/codec.h"
+#include "pictures/decoder.h"
 
 namespace splatscope::traces {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 std::optional<TextureImage> read(const pictures::Source& source) {
   constexpr std::size_t kMost = 16384;  // texels
   std::string why;
-  const auto decoded = pictures::codec().read_bytes(source, 3, kMost, &why);
+  const auto decoded = pictures::decoder().read_bytes(source, 3, kMost, &why);
   if (!decoded) return std::nullopt;
   TextureImage image{decoded->width, decoded->height, {}};
   image.texels.resize(image.width * image.height * 3);

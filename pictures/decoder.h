@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-// Picture files by OpenImageIO, which is loaded when it is first asked for.
+// Picture files of any format by OpenImageIO, which is loaded when it is first asked for.
 namespace splatscope::pictures {
 
 // Rows from the top, channels of a pixel side by side.
@@ -22,20 +22,9 @@ struct Source {
   std::optional<std::span<const std::byte>> bytes = {};  // of a file in memory
 };
 
-struct Picture {
-  std::size_t width = 0, height = 0, channels = 0;
-  std::string channel = {};  // name of a single one; "Z" is depth
-  const float* values = nullptr;
-  std::size_t pixel_stride = 0;  // floats from one pixel to the next
-};
-
-class Codec {
+class Decoder {
  public:
-  virtual ~Codec() = default;
-  // A whole file by the ending (".png": 8 bits, sRGB as it is; ".exr": binary32, no date). Empty where
-  // `asked_to_stop` is true before it is done. Throws std::runtime_error where the library fails.
-  virtual std::vector<std::byte> encode(const std::string& ending, const Picture& picture,
-                                        bool (*asked_to_stop)()) const = 0;
+  virtual ~Decoder() = default;
   // The first channels, `most_channels` of them at most. Nothing where it is no picture, or larger than
   // `most_side`; then `*why` is what the library says, empty where it could not open the file.
   virtual std::optional<Decoded<float>> read_floats(const Source& source, std::size_t most_channels,
@@ -45,6 +34,6 @@ class Codec {
 };
 
 // Throws std::runtime_error where the module does not lie beside the program, or does not load.
-const Codec& codec();
+const Decoder& decoder();
 
 }  // namespace splatscope::pictures
