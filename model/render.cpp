@@ -7,9 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "model/command/load_program.h"
 #include "model/draw.h"
 #include "model/error.h"
-#include "model/isa/program.h"
 #include "model/machine/machine.h"
 #include "model/output/output.h"
 #include "model/stop.h"
@@ -55,15 +55,15 @@ class Programs {
     const auto found = vertex_.find(index);
     if (found != vertex_.end()) return found->second;
     return vertex_
-        .emplace(index,
-                 vertex::VertexProgram(load(index), formats_.vertex_arithmetic, formats_.reciprocal_bits))
+        .emplace(index, vertex::VertexProgram(load_program(trace_.programs[index]),
+                                              formats_.vertex_arithmetic, formats_.reciprocal_bits))
         .first->second;
   }
 
   const LoadedPixelProgram& pixel(std::uint32_t index) {
     const auto found = pixel_.find(index);
     if (found != pixel_.end()) return found->second;
-    const isa::Program program = load(index);
+    const isa::Program program = load_program(trace_.programs[index]);
     LoadedPixelProgram loaded{pixel::PixelProgram(program, formats_.combiner), {}};
     loaded.attributes = attributes_of(program, loaded.program.texture_stages());
     if (!loaded.program.samples_ahead()) {
@@ -76,9 +76,6 @@ class Programs {
   }
 
  private:
-  isa::Program load(std::uint32_t index) const {
-    return isa::load(trace_.programs[index].text, trace_.programs[index].name);
-  }
   const Trace& trace_;
   const NumberFormats& formats_;
   std::map<std::uint32_t, vertex::VertexProgram> vertex_;

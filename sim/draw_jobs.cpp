@@ -5,9 +5,9 @@
 #include <map>
 #include <string>
 
+#include "model/command/load_program.h"
 #include "model/error.h"
 #include "model/isa/opcode.h"
-#include "model/isa/program.h"
 #include "model/number/frame_value.h"
 #include "model/pixel/pixel_program.h"
 
@@ -54,26 +54,14 @@ class Allocator {
   std::uint64_t bytes_ = 0;  // taken, without what lies between
 };
 
-isa::Program load(const Trace& trace, std::uint32_t program) {
-  return isa::load(trace.programs[program].text, trace.programs[program].name);
-}
-
-// Which programs of a trace sample a texture. A program that draws share is looked at once.
-class SamplingPrograms {
- public:
-  explicit SamplingPrograms(const Trace& trace) : trace_(trace) {}
-
-  bool sample(const Draw& draw) {
-    if (!binds_texture(draw) || !draw.pixel_program) return false;
-    const auto [known, is_new] = samples_.try_emplace(*draw.pixel_program, false);
-    if (is_new) known->second = pixel::PixelProgram(load(trace_, *draw.pixel_program)).texture_stages() != 0;
-    return known->second;
-  }
-
- private:
-  const Trace& trace_;
-  std::map<std::uint32_t, bool> samples_;
+// What a job needs to know of a pixel program.
+struct PixelWork {
+  std::uint64_t clocks = 0;  // of a quad
+  bool samples = false;      // a texture
 };
+PixelWork work_of(const isa::Program& program, const Machine::Pixel& spec) {
+  return {clocks_per_quad(program, spec), pixel::PixelProgram(program).texture_stages() != 0};
+}
 
 }  // namespace
 
@@ -129,27 +117,24 @@ MemoryLayout lay_out(const Trace& trace, const Machine& machine) {
   return layout;
 }
 
-Needs needs_of(const Trace& trace) {
+Needs needs_of(const Trace& trace, std::span<const DrawJob> jobs) {
   Needs needs;
-  SamplingPrograms programs(trace);
-  for (const Command& command : trace.commands) {
-    const Draw* draw = std::get_if<Draw>(&command);
-    if (!draw) continue;
-    for (const std::uint32_t buffer : {draw->vertex_buffer, draw->index_buffer}) {
+  for (const DrawJob& job : jobs) {
+    const Draw& draw = *job.draw;
+    for (const std::uint32_t buffer : {draw.vertex_buffer, draw.index_buffer}) {
       needs.agp |= trace.buffers[buffer].place == MemoryPlace::agp;
     }
-    needs.depth |= uses_depth(*draw);
-    needs.color |= draw->state.color_write;
-    needs.texture |= programs.sample(*draw);
+    needs.depth |= uses_depth(draw);
+    needs.color |= draw.state.color_write;
+    needs.texture |= job.textured;
   }
   return needs;
 }
 
 PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout) {
   PreparedDraws prepared;
-  SamplingPrograms programs(trace);
   std::map<std::uint32_t, std::size_t> program_numbers;
-  std::map<std::uint32_t, std::uint64_t> pixel_clocks;  // by program
+  std::map<std::uint32_t, PixelWork> pixel_work;  // by program
   for (std::size_t command = 0; command < trace.commands.size(); ++command) {
     const Draw* draw = std::get_if<Draw>(&trace.commands[command]);
     if (!draw) continue;
@@ -159,15 +144,16 @@ PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const Me
     const auto [found, is_new] =
         program_numbers.try_emplace(draw->vertex_program, prepared.vertex_programs.size());
     if (is_new) {
-      prepared.vertex_programs.push_back(issue_slots(load(trace, draw->vertex_program), machine.vertex));
+      prepared.vertex_programs.push_back(
+          issue_slots(load_program(trace.programs[draw->vertex_program]), machine.vertex));
     }
     job.vertex_program = found->second;
     if (draw->pixel_program) {
-      const auto [known, is_new] = pixel_clocks.try_emplace(*draw->pixel_program, 0);
-      if (is_new) known->second = clocks_per_quad(load(trace, *draw->pixel_program), machine.pixel);
-      job.pixel_clocks = known->second;
+      const auto [known, is_new] = pixel_work.try_emplace(*draw->pixel_program);
+      if (is_new) known->second = work_of(load_program(trace.programs[*draw->pixel_program]), machine.pixel);
+      job.pixel_clocks = known->second.clocks;
+      job.textured = binds_texture(*draw) && known->second.samples;
     }
-    job.textured = programs.sample(*draw);
     job.vertex_address = layout.buffers[draw->vertex_buffer];
     job.index_address = layout.buffers[draw->index_buffer] + 2 * draw->first_index;
     if (draw->texture) job.texture_address = layout.textures[*draw->texture];

@@ -33,7 +33,7 @@ struct Needs {
   bool color = false;    // some draw writes colour
   bool texture = false;  // some draw that writes colour samples a texture
 };
-Needs needs_of(const Trace& trace);
+Needs needs_of(const Trace& trace, std::span<const DrawJob> jobs);
 
 // Clocks of a quad in the pixel unit, at least 1: the halves of its arithmetic instructions, colour and
 // alpha, each for the slots that it takes, at `pixel.instructions_per_clock`. So a co-issued pair is as long

@@ -36,7 +36,7 @@ struct Draws {
       jobs[i].textured = binds_texture(draws[i]);
       jobs[i].triangles_clipped = clipped;
     }
-    return sim::left_out(whole, needs_of(whole), jobs);
+    return sim::left_out(whole, needs_of(whole, jobs), jobs);
   }
 
   std::vector<Draw> draws;

@@ -294,7 +294,7 @@ std::unique_ptr<SimulatedMachine> build_machine(const Trace& trace, PreparedDraw
                                                 Scheduler scheduler, UnitChoice choice) {
   expect_countable_time(trace, spec);
   auto machine = std::make_unique<SimulatedMachine>(spec, scheduler);
-  const Needs used = needs_of(trace);
+  const Needs used = needs_of(trace, draws.jobs);
   const Needs needs = choice == UnitChoice::all ? Needs{true, true, true, true} : used;
   machine->vertex_programs = std::move(draws.vertex_programs);
   machine->jobs = std::move(draws.jobs);

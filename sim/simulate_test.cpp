@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "model/command/load_program.h"
 #include "model/error.h"
 #include "model/testing/error_of.h"
 #include "sim/testing/random_trace.h"
@@ -132,7 +133,7 @@ TEST(Simulate, VertexBoundDrawsTakeTheScheduledClocksAVertex) {
   const RandomTrace small = simple_trace(200), large = simple_trace(1200);
   const Result a = simulate(small.trace, small.work, machine);
   const Result b = simulate(large.trace, large.work, machine);
-  const isa::Program program = isa::load(small.trace.programs[1].text, small.trace.programs[1].name);
+  const isa::Program program = load_program(small.trace.programs[1]);
   const double expected = 3000 * clocks_per_vertex(program, machine.vertex) / machine.vertex.units;
   // Start and end of the draw cancel, but for a vertex of the one unit that the other does not have.
   EXPECT_NEAR(static_cast<double>(b.cycles - a.cycles), expected, 60);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "model/command/load_program.h"
 #include "model/error.h"
 #include "model/geometry.h"
 #include "model/output/blended.h"
@@ -309,8 +310,7 @@ std::string explain_vertex(const Trace& trace, const NumberFormats& formats, std
     registers["inputs"][fmt::format("v{}", attribute.input)] = hex_of({v[0][0], v[1][0], v[2][0], v[3][0]});
   }
   const ShaderText& shader = trace.programs[draw.vertex_program];
-  ShaderDebugger debugger(isa::load(shader.text, shader.name),
-                          ShaderCase::of_object(std::move(registers), "--vertex", 0),
+  ShaderDebugger debugger(load_program(shader), ShaderCase::of_object(std::move(registers), "--vertex", 0),
                           formats.vertex_arithmetic, formats.reciprocal_bits);
   std::istringstream commands("continue\nprint\n");
   std::ostringstream out;

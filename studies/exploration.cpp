@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "studies/report/block_diagram.h"
-#include "studies/what_if.h"
+#include "studies/wished_hardware.h"
 
 namespace splatscope::studies {
 namespace {
@@ -47,9 +47,9 @@ Json json_of(std::span<const ProgramRow> rows) {
   return list;
 }
 
-Json json_of(const WhatIfRow& row) {
+Json json_of(const HardwareRow& row) {
   Json cells = Json::array();
-  for (const WhatIfRow::Cell& cell : row.cells) {
+  for (const HardwareRow::Cell& cell : row.cells) {
     Json one = json_of(cell.rate);
     one["megabytes"] = cell.megabytes;
     one["psnr_decibels"] = cell.psnr;
@@ -89,10 +89,10 @@ void add_table(Findings& findings, std::span<const ProgramRow> rows) {
       cells);
 }
 
-void add_table(Report& report, const std::vector<WhatIfRow>& rows) {
+void add_table(Report& report, const std::vector<HardwareRow>& rows) {
   using enum Report::Align;
   std::vector<std::vector<std::string>> cells;
-  for (const WhatIfRow& row : rows) {
+  for (const HardwareRow& row : rows) {
     const auto rate = [&](std::size_t i) {
       return fmt::format("{:.1f} ({})", row.cells[i].rate.fps, row.cells[i].rate.bottleneck);
     };
@@ -117,14 +117,14 @@ void add_table(Report& report, const std::vector<WhatIfRow>& rows) {
 }
 
 // Frames a second of ewa-per-surfel by the number of vertex units; nothing else is changed.
-Plot units_plot(const std::vector<WhatIfRow>& rows) {
+Plot units_plot(const std::vector<HardwareRow>& rows) {
   Plot plot{.title = "Vertex units, EWA normalised per surfel",
             .x_label = "vertex units",
             .y_label = "frames a second"};
   for (const std::string_view machine : kBothMachines) {
     for (const bool short_programs : {false, true}) {
       std::vector<std::pair<double, double>> points;
-      for (const WhatIfRow& row : rows) {
+      for (const HardwareRow& row : rows) {
         const Hardware& h = row.hardware;
         if (row.machine == machine && h.short_programs == short_programs && h.frame == FrameFormat::unorm8 &&
             !h.divider && h.geometry == Geometry::four_vertices) {
@@ -149,8 +149,8 @@ Plot units_plot(const std::vector<WhatIfRow>& rows) {
 void add_pictures(Findings& findings, const traces::Scene& scene) {
   const auto picture = [&](std::string_view hardware, const std::string& name, const std::string& what) {
     const auto found = std::ranges::find(wished_hardware(), hardware, &Hardware::name);
-    const WhatIfPicture drawn =
-        what_if_picture(scene, kBothMachines[0], *found, traces::Algorithm::ewa_per_pixel);
+    const HardwarePicture drawn =
+        hardware_picture(scene, kBothMachines[0], *found, traces::Algorithm::ewa_per_pixel);
     return Findings::Picture{name, fmt::format("{}: {:.1f} dB", what, drawn.psnr), drawn.image};
   };
   findings.pictures({picture("as it was", "exploration-as-it-was", "EWA, normalised per pixel"),
@@ -173,16 +173,16 @@ void study_exploration(Findings& findings, const Progress& progress) {
         fmt::format("The {} with the program \"{}\", {} slots", kBothMachines[0], row->name, row->slots),
         row->timing);
   }
-  std::vector<WhatIfRow> rows;
+  std::vector<HardwareRow> rows;
   double done = 0.5;
   for (const std::string_view machine : kBothMachines) {
-    const auto more = what_if_rows(scene, machine, wished_hardware(), part(progress, done, done + 0.25));
+    const auto more = hardware_rows(scene, machine, wished_hardware(), part(progress, done, done + 0.25));
     rows.insert(rows.end(), more.begin(), more.end());
     done += 0.25;
   }
-  findings.say(header_of_what_ifs() + "\n");
+  findings.say(header_of_hardware() + "\n");
   Json list = Json::array();
-  for (const WhatIfRow& row : rows) {
+  for (const HardwareRow& row : rows) {
     findings.say(line_of(row) + "\n");
     list.push_back(json_of(row));
   }

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "model/testing/scratch_folder.h"
-#include "studies/what_if.h"
+#include "studies/wished_hardware.h"
 
 namespace splatscope::studies {
 namespace {
@@ -55,7 +55,7 @@ TEST(Exploration, WishesDoWhatTheyAreFor) {
                                      hardware("half frame"),         hardware("divider"),
                                      hardware("4 corners a vertex"), hardware("point sprites"),
                                      hardware("short programs")};
-  const auto rows = what_if_rows(small_scene(), kBothMachines[0], wishes);
+  const auto rows = hardware_rows(small_scene(), kBothMachines[0], wishes);
   constexpr std::size_t kPixel = 1, kSurfel = 2;
   const auto& base = rows[0].cells;
   const auto fps = [&](std::size_t row, std::size_t cell) { return rows[row].cells[cell].rate.fps; };
@@ -71,7 +71,7 @@ TEST(Exploration, WishesDoWhatTheyAreFor) {
   EXPECT_LT(rows[5].cells[kPixel].psnr, base[kPixel].psnr - 5) << "point sprites are no ellipses";
   EXPECT_EQ(
       rows[5].cells[kSurfel].psnr,
-      what_if_picture(small_scene(), kBothMachines[0], wishes[5], traces::Algorithm::ewa_per_surfel).psnr)
+      hardware_picture(small_scene(), kBothMachines[0], wishes[5], traces::Algorithm::ewa_per_surfel).psnr)
       << "sprites have weights of their own";
   EXPECT_GT(fps(6, kSurfel), 1.5 * base[kSurfel].rate.fps) << "short programs";
 }
@@ -80,8 +80,8 @@ TEST(Exploration, WishesDoWhatTheyAreFor) {
 TEST(Exploration, TheDocumentationHolds) {
   const std::string page = text_of(SPLATSCOPE_SOURCE "/docs/exploration.md");
   const std::vector<Hardware> wishes{hardware("as it was"), hardware("8 vertex units"), hardware("divider")};
-  for (const WhatIfRow& row :
-       what_if_rows(traces::load_scene("checkerboard-ewa-per-surfel"), kBothMachines[1], wishes)) {
+  for (const HardwareRow& row :
+       hardware_rows(traces::load_scene("checkerboard-ewa-per-surfel"), kBothMachines[1], wishes)) {
     EXPECT_NE(page.find(line_of(row)), std::string::npos) << line_of(row);
   }
 }

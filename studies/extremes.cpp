@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "kernels/object_space_ewa/splat_accuracy.h"
+#include "model/command/load_program.h"
 #include "model/error.h"
 
 namespace splatscope::studies {
@@ -245,7 +246,7 @@ isa::Program edited(std::string_view file, std::span<const std::pair<std::string
     if (at == std::string::npos) throw ModelError(fmt::format("{} has no \"{}\"", text.name, from));
     text.text.replace(at, from.size(), to);
   }
-  return isa::load(text.text, text.name);
+  return load_program(text);
 }
 
 // How far the quad reaches from the centre in the window, in frames' widths, over what lies before the near

@@ -180,7 +180,7 @@ void add_plot(Findings& findings, std::span<const FidelityRow> rows) {
             .log_x = true,
             .log_y = true};
   for (const Fidelity fidelity : std::span(kFidelityLadder).subspan(1)) {
-    Plot::Series series{.name = std::string(name(fidelity)), .x = {}, .y = {}, .joined = false};
+    Plot::Series series{.name = std::string(name(fidelity)), .joined = false};
     for (const FidelityRow& row : rows) {
       if (row.fidelity != fidelity) continue;
       series.x.push_back(static_cast<double>(row.cycles) / row.host_seconds / 1e6);

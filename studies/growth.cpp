@@ -69,7 +69,7 @@ constexpr Measure kMeasures[] = {
     {"cycle, MB", [](const GrowthRow& row) { return row.cycle.megabytes; }}};
 
 Plot::Series series_of(std::span<const GrowthRow> rows, const Measure& measure) {
-  Plot::Series series{.name = std::string(measure.name), .x = {}, .y = {}};
+  Plot::Series series{.name = std::string(measure.name)};
   for (const GrowthRow& row : rows) {
     series.x.push_back(row.surfels);
     series.y.push_back(measure.value(row));

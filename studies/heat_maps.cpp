@@ -93,18 +93,4 @@ Image colored(const HeatMap& map) {
   return image;
 }
 
-nlohmann::ordered_json json_of(const std::vector<HeatMap>& maps) {
-  auto list = nlohmann::ordered_json::array();
-  for (const HeatMap& map : maps) {
-    list.push_back({{"name", map.name},
-                    {"file", map.name + ".exr"},
-                    {"unit", map.unit},
-                    {"what", map.what},
-                    {"frame_pixels", map.scale},
-                    {"sum", map.sum},
-                    {"counter", map.counter}});
-  }
-  return list;
-}
-
 }  // namespace splatscope::studies

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,7 +44,5 @@ class HeatMaps {
 // In colours, from 0 (black) over purple and orange to the largest count (pale yellow), by the logarithm of
 // 1 + count; magnified to the frame's pixels.
 Image colored(const HeatMap& map);
-
-nlohmann::ordered_json json_of(const std::vector<HeatMap>& maps);
 
 }  // namespace splatscope::studies

@@ -64,6 +64,11 @@ std::vector<std::byte> encode_png(const Image& image) {
   return bytes;
 }
 
+double decibels(double squares, std::size_t values) {
+  if (values == 0) return std::numeric_limits<double>::quiet_NaN();
+  return -10 * std::log10(squares / static_cast<double>(values));
+}
+
 double psnr(const Image& a, const Image& b, const std::vector<unsigned char>& mask) {
   if (a.width != b.width || a.height != b.height || (!mask.empty() && mask.size() != a.pixels.size()))
     throw ModelError("psnr: the pictures differ in size");
@@ -77,9 +82,7 @@ double psnr(const Image& a, const Image& b, const std::vector<unsigned char>& ma
     }
     count += 3;
   }
-  if (count == 0) return std::numeric_limits<double>::quiet_NaN();
-  if (sum == 0) return std::numeric_limits<double>::infinity();
-  return -10 * std::log10(sum / static_cast<double>(count));
+  return decibels(sum, count);
 }
 
 }  // namespace splatscope::studies

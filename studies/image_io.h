@@ -49,9 +49,11 @@ void write_png(const Image& image, const std::filesystem::path& path);  // 8-bit
 // Bytes of a PNG file.
 std::vector<std::byte> encode_png(const Image& image);
 
-// Peak signal-to-noise ratio of r, g and b against peak 1, in dB, over the pixels where `mask` is not 0
-// (empty: all of them). Infinite where they are equal, NaN where the mask is empty of pixels. The sizes must
-// agree.
+// Peak signal-to-noise ratio against peak 1, in dB, of `values` whose differences have this sum of squares.
+// Infinite where that is 0, NaN where there are none.
+double decibels(double squares, std::size_t values);
+
+// The same of r, g and b over the pixels where `mask` is not 0 (empty: all of them). The sizes must agree.
 double psnr(const Image& a, const Image& b, const std::vector<unsigned char>& mask = {});
 
 }  // namespace splatscope::studies

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "model/command/load_program.h"
 #include "model/error.h"
 #include "model/input_file.h"
 #include "model/isa/tokens.h"
@@ -44,7 +45,7 @@ std::string_view kind_of(const isa::Program& program) {
 // Puts the program of `file` into the place of `replaced`; tokens become text, which is what a trace holds.
 // Returns what it did.
 std::string replace(ShaderText& replaced, const std::string& file) {
-  const isa::Program before = isa::load(replaced.text, replaced.name);
+  const isa::Program before = load_program(replaced);
   std::string content = read_text_file(file, "a program as text or tokens");
   const auto bytes = std::as_bytes(std::span(content));
   const isa::Program program = shader_of_bytes(bytes, file);

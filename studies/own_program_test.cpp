@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/command/load_program.h"
 #include "model/isa/tokens.h"
 #include "model/render.h"
 #include "model/testing/scratch_folder.h"
@@ -46,7 +47,7 @@ Trace small_trace() {
 TEST(OwnProgram, MayBeTokens) {
   Trace text = small_trace(), tokens = text;
   const ShaderText& recorded = *std::ranges::find(text.programs, "splat_ewa.vs", &ShaderText::name);
-  const auto bytes = isa::bytes_of_tokens(isa::write_tokens(isa::load(recorded.text, recorded.name)));
+  const auto bytes = isa::bytes_of_tokens(isa::write_tokens(load_program(recorded)));
   const std::string file = written("own.vso", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   replace_programs(tokens, {"splat_ewa.vs=" + file});
   EXPECT_EQ(render(text, {}).frame, render(tokens, {}).frame);

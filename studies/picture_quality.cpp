@@ -53,16 +53,6 @@ kernels::ScreenSpacePicture undivided(kernels::ScreenSpacePicture picture) {
   return picture;
 }
 
-nlohmann::ordered_json json_of(const Comparison& c) {
-  return {{"psnr_decibels", c.psnr},
-          {"psnr_off_edges_decibels", c.psnr_off_edges},
-          {"pixels_off_edges", c.pixels_off_edges},
-          {"surface_pixels", c.surface_pixels},
-          {"holes", c.holes},
-          {"rounded_to_black", c.rounded_to_black},
-          {"inside_pixels", c.inside_pixels}};
-}
-
 nlohmann::ordered_json json_of(std::string_view setting, const QualityRow& row) {
   return {{"splatting", setting},
           {"model", row.name},

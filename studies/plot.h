@@ -16,9 +16,9 @@ struct Plot {
   bool same_scale = false;  // a unit of x is as long as one of y
   struct Series {
     std::string name;
-    std::vector<double> x, y;  // of one length; values that are not finite are left out
-    bool joined = true;        // by a line; else points alone
-    bool with_last = false;    // one colour with the series before it, and large points
+    std::vector<double> x = {}, y = {};  // of one length; values that are not finite are left out
+    bool joined = true;                  // by a line; else points alone
+    bool with_last = false;              // one colour with the series before it, and large points
   };
   std::vector<Series> series = {};
 };

@@ -25,9 +25,9 @@ namespace {
 constexpr double kFullCutoff = 8;    // exp(-8) is a tenth of 1/255
 constexpr double kFieldOfView = 60;  // degrees
 
-kernels::SplatSums sums_of(traces::Scene scene, double cutoff, bool circular, bool one_surface) {
+kernels::SplatSums sums_of(traces::Scene scene, double cutoff, bool one_surface) {
   scene.splatting.cutoff = cutoff;
-  scene.splatting.circular_cutoff = circular;
+  scene.splatting.circular_cutoff = true;
   if (one_surface) return single_surface_reference(scene);
   return screen_space_reference(scene, kernels::ScreenMap::perspective);
 }
@@ -36,8 +36,8 @@ kernels::SplatSums sums_of(traces::Scene scene, double cutoff, bool circular, bo
 PrecisionScene with_references(std::string name, traces::Scene scene, bool one_surface) {
   for (traces::Surfel& surfel : scene.surfels) surfel.color = glm::round(surfel.color * 255.0f) / 255.0f;
   const double cutoff = scene.splatting.cutoff;
-  return {std::move(name), scene, sums_of(scene, cutoff, true, one_surface),
-          sums_of(scene, kFullCutoff, true, one_surface)};
+  return {std::move(name), scene, sums_of(scene, cutoff, one_surface),
+          sums_of(scene, kFullCutoff, one_surface)};
 }
 
 // Every splat with the same weight, whatever its surroundings.
@@ -118,7 +118,7 @@ Errors errors_of(const Frame& frame, const kernels::SplatSums& reference) {
     out.black += brightest == 0 && wanted > 1.0 / 255;
   }
   const auto pixels = static_cast<double>(largest.size());
-  out.psnr = -10 * std::log10(squares / (3 * pixels));
+  out.psnr = decibels(squares, 3 * largest.size());
   out.bias *= 255 / (3 * pixels);
   for (double* sum : {&out.mean, &out.saturated, &out.black}) *sum /= pixels;
   if (!largest.empty()) {
@@ -258,7 +258,7 @@ std::vector<DepthRow> depth_rows(std::span<const double> offsets, int frame_size
       {"z16", DepthFormat::z16}, {"z24", DepthFormat::z24}, {"float32", DepthFormat::float32}};
   constexpr float kApart = 4;
   const traces::Scene front = corrugated_plane(frame_size);
-  const kernels::SplatSums reference = sums_of(front, front.splatting.cutoff, true, true);
+  const kernels::SplatSums reference = sums_of(front, front.splatting.cutoff, true);
   traces::Scene both = front;
   for (traces::Surfel surfel : front.surfels) {
     surfel.position.y -= kApart;

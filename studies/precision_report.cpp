@@ -91,7 +91,7 @@ void add_overlaps(Findings& findings, const std::vector<OverlapRow>& rows) {
   text += "\n";
   for (std::size_t i = 0; i < rows.size() / std::size(kOverlaps); ++i) {
     const std::size_t buffers = rows.size() / std::size(kOverlaps);
-    Plot::Series series{.name = rows[i].frame, .x = {}, .y = {}};
+    Plot::Series series{.name = rows[i].frame};
     text += fmt::format("{:<18}", rows[i].frame);
     for (std::size_t k = i; k < rows.size(); k += buffers) {
       series.x.push_back(rows[k].overlaps);
@@ -130,7 +130,7 @@ void add_depths(Findings& findings, const std::vector<DepthRow>& rows) {
     if (plot.series.empty() ||
         plot.series[plot.series.size() - 2].name != fmt::format("{}, lost", row.format)) {
       for (const char* what : {"lost", "leaks"})
-        plot.series.push_back({.name = fmt::format("{}, {}", row.format, what), .x = {}, .y = {}});
+        plot.series.push_back({.name = fmt::format("{}, {}", row.format, what)});
     }
     Plot::Series& lost = plot.series[plot.series.size() - 2];
     Plot::Series& leaks = plot.series.back();

@@ -30,7 +30,7 @@ constexpr double kHalfStep = 0.5 / 255;  // of 8 bits
 struct SquareSum {
   std::size_t pixels = 0;
   double squares = 0;  // of three channels a pixel
-  double psnr() const { return -10 * std::log10(squares / (3.0 * static_cast<double>(pixels))); }
+  double psnr() const { return decibels(squares, 3 * pixels); }
 };
 
 // Of the frame's channels from the reference's.
@@ -208,6 +208,18 @@ Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& refere
   }
   out.rounded_to_black += empty.size() - out.holes;
   return out;
+}
+
+nlohmann::ordered_json json_of(const Comparison& c) {
+  return {{"psnr_decibels", c.psnr},
+          {"surface_pixels", c.surface_pixels},
+          {"psnr_off_edges_decibels", c.psnr_off_edges},
+          {"pixels_off_edges", c.pixels_off_edges},
+          {"worst", c.worst},
+          {"pixels_over_8", c.over_8},
+          {"inside_pixels", c.inside_pixels},
+          {"holes", c.holes},
+          {"rounded_to_black", c.rounded_to_black}};
 }
 
 std::string describe_psnr(const Comparison& comparison) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -76,6 +77,9 @@ Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& refere
                    const std::function<Frame()>& unrounded = {});
 
 // "PSNR 40.1 dB over 1234 pixels", or "no pixel is covered".
+// For results.json. A figure that no file can hold, an infinite PSNR, is null there.
+nlohmann::ordered_json json_of(const Comparison& comparison);
+
 std::string describe_psnr(const Comparison& comparison);
 
 // Of the summed weights where there are any; 0 where there are none.

@@ -6,6 +6,7 @@
 #include <exception>
 #include <future>
 
+#include "model/command/load_program.h"
 #include "model/error.h"
 #include "model/isa/program.h"
 #include "sim/fidelity/sampled.h"
@@ -102,7 +103,7 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
 }
 
 int slots_of(const ShaderText& program) {
-  return isa::slot_count(isa::load(program.text, program.name));
+  return isa::slot_count(load_program(program));
 }
 
 Rate rate_of(const sim::Result& timing) {

@@ -114,17 +114,18 @@ bool is_counted(const std::string& counter, const FrameRun& run) {
          });
 }
 
-// A figure that no file can hold, an infinite PSNR, is null.
-Json reference_json(const Comparison& c) {
-  return {{"psnr_decibels", c.psnr},
-          {"surface_pixels", c.surface_pixels},
-          {"psnr_off_edges_decibels", c.psnr_off_edges},
-          {"pixels_off_edges", c.pixels_off_edges},
-          {"worst", c.worst},
-          {"pixels_over_8", c.over_8},
-          {"inside_pixels", c.inside_pixels},
-          {"holes", c.holes},
-          {"rounded_to_black", c.rounded_to_black}};
+Json heat_maps_json(const FrameRun& run) {
+  Json out = Json::array();
+  for (const HeatMap& map : run.heat_maps) {
+    out.push_back({{"name", map.name},
+                   {"file", map.name + ".exr"},
+                   {"unit", map.unit},
+                   {"what", map.what},
+                   {"frame_pixels", map.scale},
+                   {"sum", map.sum}});
+    if (is_counted(map.counter, run)) out.back()["counter"] = map.counter;
+  }
+  return out;
 }
 
 Json mesh_json(const traces::MeshCounts& mesh) {
@@ -222,15 +223,11 @@ nlohmann::ordered_json results_of(const Input& input, const Machine& machine, Fi
     results["statistics"] = statistics_json(*run.timing);
     results["roofline"] = json_of(ceilings(machine, *run.timing));
   }
-  if (!run.heat_maps.empty()) {
-    results["heat_maps"] = json_of(run.heat_maps);
-    for (Json& map : results["heat_maps"])
-      if (!is_counted(map["counter"].get<std::string>(), run)) map.erase("counter");
-  }
+  if (!run.heat_maps.empty()) results["heat_maps"] = heat_maps_json(run);
   if (input.recorded) results["surfels"] = surfels_json(*input.recorded, input.skipped, input.estimated);
   if (input.mesh.triangles > 0) results["mesh"] = mesh_json(input.mesh);
   if (input.volume) results["volume"] = volume_json(*input.volume);
-  if (run.reference) results["reference"] = reference_json(run.reference->comparison);
+  if (run.reference) results["reference"] = json_of(run.reference->comparison);
   results["host"] = {{"seconds", run.host_seconds}};
   if (run.timing) {
     results["host"]["cycles_per_second"] = static_cast<double>(run.timing->cycles) / run.host_seconds;

@@ -27,23 +27,6 @@ constexpr std::string_view kProgramName = "program", kCaseName = "case";
 
 constexpr std::size_t kLongestLine = std::size_t{16} << 20;  // bytes
 
-int output_place(isa::RegisterFile file, int index) {
-  switch (file) {
-    case isa::RegisterFile::position_out:
-      return vertex::oPos;
-    case isa::RegisterFile::color_out:
-      return vertex::oD0 + index;
-    case isa::RegisterFile::texcoord_out:
-      return vertex::oT0 + index;
-    case isa::RegisterFile::fog_out:
-      return vertex::oFog;
-    case isa::RegisterFile::point_size_out:
-      return vertex::oPts;
-    default:
-      return -1;
-  }
-}
-
 ordered_json run_vertex(const ShaderCase& test, const isa::Program& program, Arithmetic arithmetic) {
   const auto in = test.vertex_inputs();
   const auto out = std::make_unique<vertex::OutputBatch>();
@@ -51,9 +34,9 @@ ordered_json run_vertex(const ShaderCase& test, const isa::Program& program, Ari
   ordered_json outputs;
   for (const isa::Instruction& instruction : program.instructions) {
     const isa::Destination& destination = instruction.destination;
-    const int place = output_place(destination.file, destination.index);
-    if (place < 0 || instruction.opcode == isa::Opcode::nop) continue;
-    const auto& o = out->o[place];
+    const auto place = vertex::output_of(destination.file, destination.index);
+    if (!place || instruction.opcode == isa::Opcode::nop) continue;
+    const auto& o = out->o[*place];
     outputs[isa::register_name(destination.file, destination.index)] =
         hex_of({o[0][0], o[1][0], o[2][0], o[3][0]});
   }

@@ -21,7 +21,7 @@ constexpr std::string_view kRenderers[] = {kSingle, kDouble, kBothMachines[0], k
 
 // Seconds of a renderer's frames over their pixels.
 Plot::Series series_of(std::span<const SoftwareRow> rows, std::string_view renderer) {
-  Plot::Series series{.name = std::string(renderer), .x = {}, .y = {}};
+  Plot::Series series{.name = std::string(renderer)};
   for (const SoftwareRow& row : rows) {
     if (row.renderer != renderer) continue;
     series.x.push_back(static_cast<double>(row.resolution) * row.resolution);

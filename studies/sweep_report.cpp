@@ -65,7 +65,7 @@ std::optional<Plot> plot_of(const Sweep& sweep) {
     const std::string name = settings_text(point, others);
     if (plot.series.empty() || plot.series.back().name != name) {
       if (plot.series.size() == kMostCurves) return std::nullopt;
-      plot.series.push_back({.name = name, .x = {}, .y = {}});
+      plot.series.push_back({.name = name});
     }
     const std::optional<double> x = traces::number_of<double>(point.settings.back().second);
     if (!x) return std::nullopt;

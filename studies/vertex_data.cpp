@@ -64,7 +64,7 @@ void add_table(Findings& findings, const Plane& plane, const std::vector<VertexD
 }
 
 Plot::Series points(const std::string& name) {
-  return {.name = name, .x = {}, .y = {}, .joined = false};
+  return {.name = name, .joined = false};
 }
 
 Plot slots_plot(const std::vector<VertexDataRow>& rows) {

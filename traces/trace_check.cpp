@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "model/command/load_program.h"
 #include "model/control_characters.h"
 #include "model/error.h"
 #include "model/isa/opcode.h"
@@ -90,7 +91,7 @@ class Checker {
   Loaded check_program(const ShaderText& text) const {
     if (has_control_characters(text.name)) fail("control characters in its name", "a name on one line");
     try {
-      const isa::Program program = isa::load(text.text, text.name);
+      const isa::Program program = load_program(text);
       const bool is_pixel = program.version.kind == isa::ShaderKind::pixel;
       if (!is_pixel) return {program.version.kind, 0};
       const pixel::PixelProgram pixel(program);

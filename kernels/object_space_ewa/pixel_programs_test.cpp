@@ -9,14 +9,9 @@
 namespace splatscope::kernels {
 namespace {
 
-isa::Program load(std::string_view name) {
-  const ShaderText text = shader_text(name);
-  return isa::load(text.text, text.name);
-}
-
 // r0 for diffuse (0.5, 0.25, 1, 0.5) and a texel whose colour must not matter.
 Vec4 run(std::string_view name) {
-  const pixel::PixelProgram program(load(name));
+  const pixel::PixelProgram program(load_program(name));
   EXPECT_EQ(program.texture_stages(), 1u);
   const auto batch = std::make_unique<pixel::FragmentBatch>();
   const Vec4 diffuse{0.5f, 0.25f, 1.0f, 0.5f};
@@ -31,12 +26,12 @@ Vec4 run(std::string_view name) {
 
 TEST(PixelPrograms, ColourAndWeightApart) {
   EXPECT_EQ(run(kSplatPixelProgram), (Vec4{0.5f, 0.25f, 1.0f, 0.375f}));
-  EXPECT_EQ(isa::slot_count(load(kSplatPixelProgram)), 2);
+  EXPECT_EQ(isa::slot_count(load_program(kSplatPixelProgram)), 2);
 }
 
 TEST(PixelPrograms, ColourTimesWeight) {
   EXPECT_EQ(run(kWeightedSplatPixelProgram), (Vec4{0.1875f, 0.09375f, 0.375f, 0.375f}));
-  EXPECT_EQ(isa::slot_count(load(kWeightedSplatPixelProgram)), 3);
+  EXPECT_EQ(isa::slot_count(load_program(kWeightedSplatPixelProgram)), 3);
 }
 
 }  // namespace

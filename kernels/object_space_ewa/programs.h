@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/view.h"
-#include "model/command/commands.h"
+#include "model/command/load_program.h"
 
 // The programs of object-space EWA splatting (README.md) and how their registers are filled.
 namespace splatscope::kernels {
@@ -19,6 +19,9 @@ inline constexpr std::string_view kWeightedSplatPixelProgram = "splat_weighted.p
 
 // A program by its file name. Throws ModelError where there is none of that name.
 ShaderText shader_text(std::string_view name);
+inline isa::Program load_program(std::string_view name) {
+  return splatscope::load_program(shader_text(name));
+}
 
 // Vertex inputs, the same for the three vertex programs: v0 to v5. A surfel is four vertices that differ only
 // in the corner; a quad's two triangles take them in the order (0,0), (1,0), (1,1), (0,1) or its reverse.

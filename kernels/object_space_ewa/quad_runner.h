@@ -43,11 +43,6 @@ inline bool is_finite(const QuadOutput& quad) {
 
 inline constexpr double kCutoff = 1.0;  // c of Eq. 14
 
-inline isa::Program load_program(std::string_view file) {
-  const ShaderText text = shader_text(file);
-  return isa::load(text.text, text.name);
-}
-
 // Names the cases of a test over programs.
 inline constexpr auto program_name = [](const auto& info) { return std::string(info.param.name); };
 

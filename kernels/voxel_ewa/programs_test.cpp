@@ -39,11 +39,6 @@ struct VoxelOutput {
 constexpr glm::dvec2 kCorners[4] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 const glm::dvec4 kColor{0.25, 0.5, 0.75, 0.8};
 
-isa::Program load(std::string_view file) {
-  const ShaderText text = shader_text(file);
-  return isa::load(text.text, text.name);
-}
-
 std::vector<VoxelOutput> run(const isa::Program& program, Arithmetic arithmetic,
                              std::span<const Vec4> constants, std::span<const Voxel> voxels) {
   const vertex::VertexProgram executable(program, arithmetic);
@@ -140,7 +135,7 @@ Errors errors_of(std::string_view file, Arithmetic arithmetic, double low, doubl
   constexpr std::uint32_t kSeed = 2002;
   const View view = test_view();
   std::mt19937 generator(kSeed);
-  const isa::Program program = load(file);
+  const isa::Program program = load_program(file);
   Errors errors;
   for (int i = 0; i < 2000; ++i) {
     const std::array voxels{random_voxel(view, low, high, generator)};
@@ -157,9 +152,9 @@ Errors errors_of(std::string_view file, Arithmetic arithmetic, double low, doubl
 }
 
 TEST(VoxelPrograms, Slots) {
-  EXPECT_EQ(isa::slot_count(load(kVoxelGridProgram)), 28);
-  EXPECT_EQ(isa::slot_count(load(kVoxelProgram)), 39);
-  EXPECT_EQ(isa::slot_count(load(kSheetProgram)), 3);
+  EXPECT_EQ(isa::slot_count(load_program(kVoxelGridProgram)), 28);
+  EXPECT_EQ(isa::slot_count(load_program(kVoxelProgram)), 39);
+  EXPECT_EQ(isa::slot_count(load_program(kSheetProgram)), 3);
 }
 
 class VoxelAccuracy : public testing::TestWithParam<std::string_view> {};
@@ -191,7 +186,7 @@ TEST_P(VoxelAccuracy, EveryInstructionChangesAnOutput) {
   for (int i = 0; i < 20; ++i) voxels.push_back(random_voxel(view, 0.2, 5, generator));
   const std::vector<Vec4> constants = voxel_constants(
       view, glm::dmat4(1.0), GetParam() == kVoxelGridProgram ? &voxels[0].variance : nullptr, kCutoff, kUnit);
-  const isa::Program program = load(GetParam());
+  const isa::Program program = load_program(GetParam());
   const auto whole = run(program, Arithmetic::ieee, constants, voxels);
   for (std::size_t i = 0; i < program.instructions.size(); ++i) {
     isa::Program without = program;
@@ -208,7 +203,7 @@ TEST_P(VoxelAccuracy, DepthColourAndTextureCoordinates) {
   const std::vector<Vec4> constants =
       voxel_constants(view, glm::dmat4(1.0), &voxels[0].variance, kCutoff, kUnit);
   const VoxelOutput output =
-      run(load(GetParam()), Arithmetic::ieee,
+      run(load_program(GetParam()), Arithmetic::ieee,
           GetParam() == kVoxelGridProgram ? constants
                                           : voxel_constants(view, glm::dmat4(1.0), nullptr, kCutoff, kUnit),
           voxels)[0];
@@ -229,7 +224,7 @@ TEST(VoxelPrograms, PositionsInUnitsOfTheGrid) {
   const Voxel on_grid{{17, -5, 9}, glm::dmat3(1e-4, 0, 0, 0, 4e-4, 0, 0, 0, 9e-4)};
   const Voxel in_object{glm::dvec3(to_object * glm::dvec4(on_grid.position, 1)), on_grid.variance};
   const auto outputs =
-      run(load(kVoxelGridProgram), Arithmetic::ieee,
+      run(load_program(kVoxelGridProgram), Arithmetic::ieee,
           voxel_constants(view, to_object, &on_grid.variance, kCutoff, kUnit), std::array{on_grid});
   Errors errors;
   compare(view, in_object, outputs[0], errors);
@@ -241,9 +236,9 @@ TEST(VoxelPrograms, PositionsInUnitsOfTheGrid) {
 TEST(VoxelPrograms, PixelProgramsLoad) {
   for (const int steps : {255, 32, 1}) {
     const ShaderText text = voxel_pixel_program(steps);
-    EXPECT_EQ(isa::slot_count(isa::load(text.text, text.name)), 4);
+    EXPECT_EQ(isa::slot_count(splatscope::load_program(text)), 4);
   }
-  EXPECT_EQ(isa::slot_count(load(kSheetPixelProgram)), 2);
+  EXPECT_EQ(isa::slot_count(load_program(kSheetPixelProgram)), 2);
 }
 
 }  // namespace

@@ -11,8 +11,39 @@
 namespace splatscope::isa {
 namespace {
 
+// The row of a texture matrix that a stage of a pixel program gives the last one: behind all registers.
+constexpr std::size_t kFirstRow = kRegisterBits - 4;
 // First register of each kind.
 constexpr std::size_t kAddress = kVertexTemporaries, kTextures = 13, kOutputs = 19;
+
+std::size_t register_bit(RegisterFile file, std::size_t index, std::size_t component) {
+  switch (file) {
+    case RegisterFile::address:
+      index += kAddress;
+      break;
+    case RegisterFile::texture:
+      index += kTextures;
+      break;
+    case RegisterFile::position_out:
+      index += kOutputs;
+      break;
+    case RegisterFile::fog_out:
+      index += kOutputs + 1;
+      break;
+    case RegisterFile::point_size_out:
+      index += kOutputs + 2;
+      break;
+    case RegisterFile::color_out:
+      index += kOutputs + 3;
+      break;
+    case RegisterFile::texcoord_out:
+      index += kOutputs + 5;
+      break;
+    default:
+      break;
+  }
+  return 4 * index + component;
+}
 
 void include(RegisterSet& set, RegisterFile file, std::size_t index, unsigned components) {
   for (std::size_t component = 0; component < 4; ++component)
@@ -29,6 +60,46 @@ RegisterSet lost_at_phase() {
   for (std::size_t index = 0; index < kVertexTemporaries; ++index)
     include(set, RegisterFile::temporary, index, 0x8);
   return set;
+}
+
+// What an instruction reads and writes, and whether it acts on more than registers (texkill, depth).
+struct Effects {
+  RegisterSet reads;
+  RegisterSet writes;
+  bool side_effect = false;
+};
+
+Effects effects_of(const Program& program, const Instruction& instruction) {
+  Effects effects;
+  using enum Opcode;
+  if (instruction.opcode == nop) return effects;
+  if (instruction.opcode == phase) {
+    effects.writes = lost_at_phase();
+    effects.side_effect = true;
+    return effects;
+  }
+  for (int i = 0; i < instruction.source_count; ++i) {
+    const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+    if (source.relative) include(effects.reads, RegisterFile::address, 0, 0x1);
+    const auto rows =
+        static_cast<std::size_t>(i == 1 ? std::max(1, matrix_shape(instruction.opcode).rows) : 1);
+    for (std::size_t row = 0; is_tracked(source.file) && row < rows; ++row)
+      include(effects.reads, source.file, source.index + row, components_read(instruction, i));
+  }
+  const Destination& destination = instruction.destination;
+  const Opcode opcode = instruction.opcode;
+  effects.side_effect = opcode == texkill || opcode == texdepth || opcode == texm3x2depth;
+  if (program.version.minor == 4)  // before, texkill looks at coordinates
+    include(effects.reads, destination.file, destination.index, destination_components_read(opcode));
+  if (opcode == texm3x2pad || opcode == texm3x3pad) {
+    effects.writes.set(kFirstRow + destination.index);
+    return effects;
+  }
+  for (int row = 1; row < texture_matrix_rows(opcode); ++row)
+    effects.reads.set(kFirstRow + destination.index - static_cast<std::size_t>(row));
+  if (opcode != texkill && opcode != texdepth)
+    include(effects.writes, destination.file, destination.index, destination.mask);
+  return effects;
 }
 
 RegisterSet live_at_the_end(const Program& program) {
@@ -114,35 +185,6 @@ void find_critical_path(const Program& program, Analysis& analysis) {
 
 }  // namespace
 
-std::size_t register_bit(RegisterFile file, std::size_t index, std::size_t component) {
-  switch (file) {
-    case RegisterFile::address:
-      index += kAddress;
-      break;
-    case RegisterFile::texture:
-      index += kTextures;
-      break;
-    case RegisterFile::position_out:
-      index += kOutputs;
-      break;
-    case RegisterFile::fog_out:
-      index += kOutputs + 1;
-      break;
-    case RegisterFile::point_size_out:
-      index += kOutputs + 2;
-      break;
-    case RegisterFile::color_out:
-      index += kOutputs + 3;
-      break;
-    case RegisterFile::texcoord_out:
-      index += kOutputs + 5;
-      break;
-    default:
-      break;
-  }
-  return 4 * index + component;
-}
-
 std::string to_string(const RegisterSet& set) {
   std::string text;
   for (std::size_t index = 0; index < kOutputs; ++index) {
@@ -157,39 +199,6 @@ std::string to_string(const RegisterSet& set) {
     if (components != "xyzw") text += '.' + components;
   }
   return text;
-}
-
-Effects effects_of(const Program& program, const Instruction& instruction) {
-  Effects effects;
-  using enum Opcode;
-  if (instruction.opcode == nop) return effects;
-  if (instruction.opcode == phase) {
-    effects.writes = lost_at_phase();
-    effects.side_effect = true;
-    return effects;
-  }
-  for (int i = 0; i < instruction.source_count; ++i) {
-    const Source& source = instruction.sources[static_cast<std::size_t>(i)];
-    if (source.relative) include(effects.reads, RegisterFile::address, 0, 0x1);
-    const auto rows =
-        static_cast<std::size_t>(i == 1 ? std::max(1, matrix_shape(instruction.opcode).rows) : 1);
-    for (std::size_t row = 0; is_tracked(source.file) && row < rows; ++row)
-      include(effects.reads, source.file, source.index + row, components_read(instruction, i));
-  }
-  const Destination& destination = instruction.destination;
-  const Opcode opcode = instruction.opcode;
-  effects.side_effect = opcode == texkill || opcode == texdepth || opcode == texm3x2depth;
-  if (program.version.minor == 4)  // before, texkill looks at coordinates
-    include(effects.reads, destination.file, destination.index, destination_components_read(opcode));
-  if (opcode == texm3x2pad || opcode == texm3x3pad) {
-    effects.writes.set(kFirstRow + destination.index);
-    return effects;
-  }
-  for (int row = 1; row < texture_matrix_rows(opcode); ++row)
-    effects.reads.set(kFirstRow + destination.index - static_cast<std::size_t>(row));
-  if (opcode != texkill && opcode != texdepth)
-    include(effects.writes, destination.file, destination.index, destination.mask);
-  return effects;
 }
 
 Analysis analyze(const Program& program) {

@@ -65,35 +65,18 @@ Operation operation_of(isa::Opcode opcode) {
 }
 
 void set_destination(const isa::Destination& destination, Step& step) {
-  using enum isa::RegisterFile;
   step.mask = destination.mask;
-  step.destination_place = Place::output;
-  switch (destination.file) {
-    case temporary:
-      step.destination_place = Place::temporary;
-      step.destination_index = destination.index;
-      return;
-    case position_out:
-      step.destination_index = oPos;
-      return;
-    case color_out:
-      step.destination_index = static_cast<std::uint16_t>(oD0 + destination.index);
-      return;
-    case texcoord_out:
-      step.destination_index = static_cast<std::uint16_t>(oT0 + destination.index);
-      return;
-    case fog_out:
-      step.destination_index = oFog;
-      return;
-    case point_size_out:
-      step.destination_index = oPts;
-      return;
-    case address:
-      step.operation = Operation::load_address;
-      step.destination_place = Place::address;
-      return;
-    default:
-      throw ModelError("not a destination of vertex programs");
+  if (destination.file == isa::RegisterFile::temporary) {
+    step.destination_place = Place::temporary;
+    step.destination_index = destination.index;
+  } else if (destination.file == isa::RegisterFile::address) {
+    step.operation = Operation::load_address;
+    step.destination_place = Place::address;
+  } else if (const auto output = output_of(destination.file, destination.index)) {
+    step.destination_place = Place::output;
+    step.destination_index = static_cast<std::uint16_t>(*output);
+  } else {
+    throw ModelError("not a destination of vertex programs");
   }
 }
 
@@ -178,6 +161,23 @@ Operand resolve_source(const StepSource& source, const Workspace& workspace, con
 }
 
 }  // namespace
+
+std::optional<int> output_of(isa::RegisterFile file, int index) {
+  switch (file) {
+    case isa::RegisterFile::position_out:
+      return oPos;
+    case isa::RegisterFile::color_out:
+      return oD0 + index;
+    case isa::RegisterFile::texcoord_out:
+      return oT0 + index;
+    case isa::RegisterFile::fog_out:
+      return oFog;
+    case isa::RegisterFile::point_size_out:
+      return oPts;
+    default:
+      return std::nullopt;
+  }
+}
 
 std::vector<Step> make_steps(const isa::Program& program) {
   std::vector<Step> steps;

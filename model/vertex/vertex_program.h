@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ inline constexpr int kGroup = 4;    // successive vertices that may have inputs 
 
 // Output registers in the order of this array: oPos, oD0, oD1, oT0..oT7, oFog (x), oPts (x).
 enum Output : int { oPos = 0, oD0 = 1, oD1 = 2, oT0 = 3, oFog = 11, oPts = 12, kOutputs = 13 };
+
+// The place of a register there; nothing for one that is no output.
+std::optional<int> output_of(isa::RegisterFile file, int index);
 
 // Registers of a batch, structure of arrays: [register][component][vertex].
 struct InputBatch {

@@ -17,9 +17,9 @@ class ThroughputEstimate::State {
       : trace_(trace),
         machine_(machine),
         what_if_(what_if),
-        needs_(needs_of(trace)),
         layout_(lay_out(trace, machine)),
         draws_(prepare_draws(trace, machine, layout_)),
+        needs_(needs_of(trace, draws_.jobs)),
         stretches_(trace, machine, layout_, draws_, what_if) {}
 
   void add(const DrawWork& work) {
@@ -157,9 +157,9 @@ class ThroughputEstimate::State {
   const Trace& trace_;
   const Machine& machine_;
   const WhatIf what_if_;
-  const Needs needs_;
   MemoryLayout layout_;
   PreparedDraws draws_;
+  const Needs needs_;
   Stretches stretches_;
   std::size_t next_draw_ = 0;
   std::vector<Cycle> ends_;  // of the commands so far

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "model/command/load_program.h"
 #include "sim/fidelity/stretches.h"
 #include "sim/testing/random_trace.h"
 #include "sim/units/vertex/vertex_clocks.h"
@@ -336,7 +337,7 @@ TEST(Throughput, WhatIfAVertexRunsAllOfItForEachCorner) {
     const Result result = estimate_throughput(made.trace, made.work, machine, what_if);
     return static_cast<double>(std::ranges::find(result.units, "vertex0", &UnitBooks::name)->busy);
   };
-  isa::Program program = isa::load(made.trace.programs[1].text, made.trace.programs[1].name);
+  isa::Program program = load_program(made.trace.programs[1]);
   const double once = clocks_per_vertex(program, machine.vertex);
   const std::vector<isa::Instruction> body = program.instructions;
   for (int corner = 1; corner < 4; ++corner)

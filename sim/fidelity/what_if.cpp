@@ -1,5 +1,6 @@
 #include "sim/fidelity/what_if.h"
 
+#include "model/command/load_program.h"
 #include "model/isa/analysis.h"
 #include "model/vertex/vertex_fetch.h"
 #include "sim/units/vertex/vertex_clocks.h"
@@ -32,9 +33,9 @@ double clocks_of_vertex(const Trace& trace, const Draw& draw, const std::vector<
                         const Machine::Vertex& spec, const WhatIf& what_if) {
   if (!reads_a_vertex_a_quad(what_if)) return throughput(slots, spec).clocks_per_vertex;
   if (what_if.point_sprites) return throughput(slots, spec).clocks_per_vertex / kCorners;
-  const ShaderText& text = trace.programs[draw.vertex_program];
+  const isa::Program program = load_program(trace.programs[draw.vertex_program]);
   const std::uint32_t inputs = what_if.corner_inputs[draw.vertex_program];
-  return clocks_per_vertex(emitting_corners(isa::load(text.text, text.name), inputs), spec) / kCorners;
+  return clocks_per_vertex(emitting_corners(program, inputs), spec) / kCorners;
 }
 
 double bytes_of_vertex(const Draw& draw, const WhatIf& what_if) {

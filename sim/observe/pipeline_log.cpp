@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "model/command/load_program.h"
 #include "model/isa/tokens.h"
 #include "sim/machine.h"
 
@@ -32,8 +33,7 @@ const isa::Program& PipelineLog::program(const VertexUnit& unit) {
   const std::uint32_t number = unit.drawing().draw->vertex_program;
   const auto known = programs_.find(number);
   if (known != programs_.end()) return known->second;
-  const ShaderText& shader = trace_.programs[number];
-  return programs_.emplace(number, isa::load(shader.text, shader.name)).first->second;
+  return programs_.emplace(number, load_program(trace_.programs[number])).first->second;
 }
 
 const std::string& PipelineLog::text(const VertexUnit& unit, const IssueSlot& slot) {

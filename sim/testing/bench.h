@@ -204,6 +204,12 @@ struct TestDraw {
     work.quads.push_back(quad);
     work.texel_blocks.insert(work.texel_blocks.end(), blocks.begin(), blocks.end());
   }
+  // The numbers of all of them, at once.
+  Timed<std::uint32_t> quads() const {
+    Timed<std::uint32_t> items;
+    for (std::uint32_t i = 0; i < work.quads.size(); ++i) items.emplace_back(0, i);
+    return items;
+  }
   void add_triangle(int new_vertices, int quads, int tiles, int pieces = 1) {
     TriangleWork triangle;
     triangle.new_vertices = static_cast<std::uint8_t>(new_vertices);

@@ -38,9 +38,9 @@ OffsetRun run_with_offset(const traces::Scene& scene, traces::DepthOffsetScheme 
   return {std::move(trace), std::move(rendered), counts};
 }
 
-std::array<OffsetRun, 2> compare_schemes(const std::string& name, const traces::Scene& scene,
-                                         const traces::CapturedWeights& weights, const Machine& machine,
-                                         const VisibleSurface& surface, Findings& findings) {
+void compare_schemes(const std::string& name, const traces::Scene& scene,
+                     const traces::CapturedWeights& weights, const Machine& machine,
+                     const VisibleSurface& surface, Findings& findings) {
   const auto run = [&](traces::DepthOffsetScheme scheme) {
     return run_with_offset(scene, scheme, scene.splatting.depth_offset, weights, machine, surface);
   };
@@ -66,7 +66,6 @@ std::array<OffsetRun, 2> compare_schemes(const std::string& name, const traces::
   findings.pictures(wrong);
   findings.text(text);
   findings.result(name, std::move(results));
-  return runs;
 }
 
 }  // namespace splatscope::studies

@@ -26,10 +26,10 @@ OffsetRun run_with_offset(const traces::Scene& scene, traces::DepthOffsetScheme 
                           const VisibleSurface& surface);
 
 // Both schemes with the scene's z_t, side by side: pictures, where fragments are wrongly hidden or kept, and
-// how many. `name` ("fig4") begins the names of files and keys. Returns the runs: viewing-ray, camera-z.
-std::array<OffsetRun, 2> compare_schemes(const std::string& name, const traces::Scene& scene,
-                                         const traces::CapturedWeights& weights, const Machine& machine,
-                                         const VisibleSurface& surface, Findings& findings);
+// how many. `name` ("fig4") begins the names of files and keys.
+void compare_schemes(const std::string& name, const traces::Scene& scene,
+                     const traces::CapturedWeights& weights, const Machine& machine,
+                     const VisibleSurface& surface, Findings& findings);
 
 // The same with z_t from too small to too large, along viewing rays.
 struct OffsetRow {

@@ -34,7 +34,7 @@ constexpr int kSpacingsInSection = 12;  // z_t, about as large as the paper draw
 
 // The depth buffer at the row, seen from above: x and z in camera space.
 Plot::Series depth_image(const kernels::View& view, const Frame& frame) {
-  Plot::Series series{.name = "depth image", .x = {}, .y = {}, .joined = false};
+  Plot::Series series{.name = "depth image", .joined = false};
   for (int x = 0; x < view.width; ++x) {
     const double depth = frame.depth_value(static_cast<std::size_t>(kRow * view.width + x));
     if (depth == 1) continue;

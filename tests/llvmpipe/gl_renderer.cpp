@@ -8,6 +8,7 @@
 
 #include <array>
 
+#include "model/command/load_program.h"
 #include "model/error.h"
 #include "model/isa/program.h"
 #include "tests/llvmpipe/glsl.h"
@@ -134,9 +135,8 @@ GlRenderer::GlRenderer(const Trace& trace) : trace_(trace) {
   for (const Command& command : trace.commands) {
     const auto* draw = std::get_if<Draw>(&command);
     if (draw == nullptr || programs_[draw->vertex_program] != 0) continue;
-    const ShaderText& text = trace.programs[draw->vertex_program];
     programs_[draw->vertex_program] =
-        link(vertex_shader(isa::load(text.text, text.name)),
+        link(vertex_shader(load_program(trace.programs[draw->vertex_program])),
              draw->state.color_write ? splat_fragment_shader() : empty_fragment_shader());
   }
 }

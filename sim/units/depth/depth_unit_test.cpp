@@ -18,7 +18,7 @@ struct DepthBench {
   testing::TestMemory memory;
 
   DepthBench(testing::TestDraw& draw, const Machine::Depth& spec, bool cleared)
-      : source(quads(draw)),
+      : source(draw.quads()),
         depth("depth", bench.completion(), spec, FrameLines::of(512, 512, 4), 1),
         in((bench.add(source), bench.add(depth), "in"), source, depth, 8),
         out((bench.add(sink), "out"), depth, sink, 8),
@@ -29,11 +29,6 @@ struct DepthBench {
     depth.clear(cleared);
     bench.begin(draw.prepare(), {&depth});
     bench.run();
-  }
-  static Timed<std::uint32_t> quads(const testing::TestDraw& draw) {
-    Timed<std::uint32_t> items;
-    for (std::uint32_t i = 0; i < draw.work.quads.size(); ++i) items.emplace_back(0, i);
-    return items;
   }
   std::vector<std::pair<std::uint32_t, bool>> traffic() const {
     std::vector<std::pair<std::uint32_t, bool>> lines;

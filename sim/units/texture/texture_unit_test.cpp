@@ -18,7 +18,7 @@ struct TextureBench {
   testing::TestMemory memory;
 
   TextureBench(testing::TestDraw& draw, const Machine::Texture& spec, Cycle latency, int memory_queue = 64)
-      : source(quads(draw)),
+      : source(draw.quads()),
         texture("texture", bench.completion(), spec, 1),
         in((bench.add(source), bench.add(texture), "in"), source, texture, 8),
         out((bench.add(sink), "out"), texture, sink, 8),
@@ -29,11 +29,6 @@ struct TextureBench {
     draw.draw.texture = 0;
     bench.begin(draw.prepare(), {&texture});
     bench.run();
-  }
-  static Timed<std::uint32_t> quads(const testing::TestDraw& draw) {
-    Timed<std::uint32_t> items;
-    for (std::uint32_t i = 0; i < draw.work.quads.size(); ++i) items.emplace_back(0, i);
-    return items;
   }
 };
 

@@ -1,4 +1,4 @@
-#include "studies/what_if.h"
+#include "studies/wished_hardware.h"
 
 #include <fmt/format.h>
 
@@ -164,7 +164,8 @@ class Drawings {
   std::map<std::pair<FrameFormat, bool>, traces::CapturedWeights> weights_;
 };
 
-WhatIfRow::Cell cell_of(const Drawings::Drawing& drawing, const Hardware& hardware, const Machine& machine) {
+HardwareRow::Cell cell_of(const Drawings::Drawing& drawing, const Hardware& hardware,
+                          const Machine& machine) {
   const sim::Result timing =
       sim::estimate_throughput(drawing.trace, drawing.work, machine, what_if_of(hardware, drawing.trace));
   const auto memory = std::ranges::find(timing.units, "memory0", &sim::UnitBooks::name);
@@ -180,12 +181,12 @@ std::span<const Hardware> wished_hardware() {
   return list;
 }
 
-std::vector<WhatIfRow> what_if_rows(const traces::Scene& scene, std::string_view machine,
-                                    std::span<const Hardware> hardware, const Progress& progress) {
+std::vector<HardwareRow> hardware_rows(const traces::Scene& scene, std::string_view machine,
+                                       std::span<const Hardware> hardware, const Progress& progress) {
   Drawings drawings(scene, machine);
-  std::vector<WhatIfRow> rows;
+  std::vector<HardwareRow> rows;
   for (const Hardware& one : hardware) {
-    WhatIfRow row{one, std::string(machine), {}};
+    HardwareRow row{one, std::string(machine), {}};
     for (const Algorithm algorithm : kAlgorithms) {
       row.cells.push_back(cell_of(drawings.of(one, algorithm), one, machine_with(machine, one)));
     }
@@ -195,20 +196,20 @@ std::vector<WhatIfRow> what_if_rows(const traces::Scene& scene, std::string_view
   return rows;
 }
 
-WhatIfPicture what_if_picture(const traces::Scene& scene, std::string_view machine, const Hardware& hardware,
-                              Algorithm algorithm) {
+HardwarePicture hardware_picture(const traces::Scene& scene, std::string_view machine,
+                                 const Hardware& hardware, Algorithm algorithm) {
   const traces::Scene changed = scene_with(scene, hardware, algorithm);
   const Machine with = machine_with(machine, hardware);
   const Frame frame = draw_frame(changed, with);
   return {picture_of(frame), psnr(frame, single_surface_reference(scene))};
 }
 
-std::string header_of_what_ifs() {
+std::string header_of_hardware() {
   return fmt::format("{:<20} {:<16} {:<20} {:<20} {:<20} {:>8} {:>6} {:>6}", "hardware", "machine", "no-ewa",
                      "ewa-per-pixel", "ewa-per-surfel", "MB/frame", "PSNR-p", "PSNR-s");
 }
 
-std::string line_of(const WhatIfRow& row) {
+std::string line_of(const HardwareRow& row) {
   const auto rate = [&](std::size_t i) {
     return fmt::format("{:>6.1f} {}", row.cells[i].rate.fps, row.cells[i].rate.bottleneck);
   };

@@ -35,7 +35,7 @@ struct Hardware {
 // paper's programs, some also by the short ones.
 std::span<const Hardware> wished_hardware();
 
-struct WhatIfRow {
+struct HardwareRow {
   Hardware hardware;
   std::string machine;
   // By algorithm of Table 1: no-ewa, ewa-per-pixel, ewa-per-surfel.
@@ -48,19 +48,19 @@ struct WhatIfRow {
 };
 
 // Draws `scene` under the three algorithms on `machine` with each hardware, at throughput fidelity.
-std::vector<WhatIfRow> what_if_rows(const traces::Scene& scene, std::string_view machine,
-                                    std::span<const Hardware> hardware, const Progress& progress = {});
+std::vector<HardwareRow> hardware_rows(const traces::Scene& scene, std::string_view machine,
+                                       std::span<const Hardware> hardware, const Progress& progress = {});
 
 // What one of these draws, and its dB against the reference.
-struct WhatIfPicture {
+struct HardwarePicture {
   Image image;
   double psnr = 0;
 };
-WhatIfPicture what_if_picture(const traces::Scene& scene, std::string_view machine, const Hardware& hardware,
-                              traces::Algorithm algorithm);
+HardwarePicture hardware_picture(const traces::Scene& scene, std::string_view machine,
+                                 const Hardware& hardware, traces::Algorithm algorithm);
 
 // A line for the terminal, without its end, and the line above such lines.
-std::string header_of_what_ifs();
-std::string line_of(const WhatIfRow& row);
+std::string header_of_hardware();
+std::string line_of(const HardwareRow& row);
 
 }  // namespace splatscope::studies
