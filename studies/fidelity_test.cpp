@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "model/testing/sanitized.h"
 #include "model/testing/scratch_folder.h"
 #include "studies/peak_memory.h"
 #include "studies/run_results.h"
@@ -126,9 +127,7 @@ TEST(FidelityStudy, EveryGroupIsInTheReportAndInTheResults) {
 }
 
 TEST(PeakMemory, GrowsWithWhatIsTakenAndStartsAgain) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer's own memory grows with the program's";
-#endif
+  if (kSanitized) GTEST_SKIP() << "a sanitizer's own memory grows with the program's";
   if (!restart_peak_memory()) GTEST_SKIP() << "the system does not reset the peak";
   constexpr double kBatch = 4;  // MB: the system counts in batches of pages
   const double before = peak_megabytes();

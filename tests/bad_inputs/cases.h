@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../forked.h"
+#include "model/testing/sanitized.h"
 
 // Bad input of one kind, case by case: each ends with the right exit status, one clear line on standard
 // error, and everything as it was, within 2 s of CPU and 1 GiB.
@@ -86,11 +87,6 @@ class BadInputs {
     return names;
   }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  static constexpr bool kSanitized = true;  // which takes its own time and memory
-#else
-  static constexpr bool kSanitized = false;
-#endif
   ScratchFolder folder_;
   int count_ = 0;
   bool prints_ = false;
