@@ -17,6 +17,10 @@ constexpr std::size_t kSamples = 47;  // of a population
 constexpr std::size_t kFewest = 4;    // units to a sample, or all are simulated
 constexpr std::size_t kUnit = 2;      // stretches
 constexpr std::size_t kTail = 2;      // stretches, at least, at the end of a draw
+// How many times what fills the queues the start of a draw is: where the units before and behind a queue are
+// about as fast, it fills by their difference alone, and so late.
+constexpr std::size_t kFillings = 6;
+constexpr std::size_t kShortest = 32;  // stretches between start and end, or a draw is simulated whole
 constexpr double kCutBias = 0.004;
 
 // Stretches that fill what lies behind primitive assembly, whose clock the samples go by: before that, it
@@ -35,13 +39,12 @@ std::size_t stretches_to_fill(const Machine& machine) {
 // says little of another, as in progressive frames from coarse to fine.
 struct Population {
   std::size_t units = 0;
-  double expected = 0;     // clocks of them all
-  double start = 0;        // of the first sample, in units of the distance between two
-  std::size_t passed = 0;  // units of the draws before
+  double expected = 0;  // clocks of them all
   std::vector<double> sampled_expected, sampled_cycles;
 
   bool is_sampled() const { return units >= kFewest * kSamples; }
-  bool is_sample(std::size_t unit) const {
+  // Of a draw whose first sample is at `start`, in units of the distance between two.
+  bool is_sample(std::size_t unit, double start) const {
     const double distance = static_cast<double>(units) / kSamples;
     const auto before = [&](std::size_t n) {  // samples
       return std::ceil(static_cast<double>(n) / distance - start);
@@ -111,13 +114,11 @@ class Sampler {
   Sampler(const Trace& trace, std::span<const DrawWork> work, const Machine& machine, std::uint64_t seed)
       : trace_(trace),
         filling_(stretches_to_fill(machine)),
+        start_(kFillings * filling_),
         layout_(lay_out(trace, machine)),
         draws_(prepare_draws(trace, work, machine, layout_)) {
     expect(machine);
-    std::mt19937_64 random(seed);
-    for (auto& [state, population] : populations_)
-      population.start = static_cast<double>(random() >> 11) * 0x1p-53;
-    thin();
+    thin(seed);
     machine_ = build_machine(trace, draws_, layout_, machine, Scheduler::skip_ahead);
   }
 
@@ -152,7 +153,7 @@ class Sampler {
   // Units of a draw between its start and its end.
   std::size_t units_between(const DrawJob& job) const {
     const std::size_t stretches = job.work->triangles.size() / kStretch;
-    return stretches <= filling_ + kTail ? 0 : (stretches - filling_ - kTail) / kUnit;
+    return stretches < start_ + kTail + kShortest ? 0 : (stretches - start_ - kTail) / kUnit;
   }
 
   // What Stretches expect of every unit.
@@ -169,25 +170,27 @@ class Sampler {
       const std::vector<Clocks> clocks = stretches.of(job);
       std::vector<double>& units = expected_.emplace_back(units_between(job));
       for (std::size_t i = 0; i < units.size() * kUnit; ++i)
-        units[i / kUnit] += *std::ranges::max_element(clocks[filling_ + i]);
+        units[i / kUnit] += *std::ranges::max_element(clocks[start_ + i]);
       population.units += units.size();
       for (const double unit : units) population.expected += unit;
     }
   }
 
-  void thin() {
+  // Each draw has a start of its own: samples at equal distances through all would fall in step with draws
+  // that are alike.
+  void thin(std::uint64_t seed) {
+    std::mt19937_64 random(seed);
     intervals_.emplace_back();
     thin_.reserve(draws_.jobs.size());
     for (std::size_t i = 0; i < draws_.jobs.size(); ++i) {
       DrawJob& job = draws_.jobs[i];
       Population& population = *population_of_[i];
       if (!population.is_sampled()) continue;
-      thin_draw(job, population, expected_[i]);
-      population.passed += expected_[i].size();
+      thin_draw(job, population, expected_[i], static_cast<double>(random() >> 11) * 0x1p-53);
     }
   }
 
-  void thin_draw(DrawJob& job, Population& population, const std::vector<double>& expected) {
+  void thin_draw(DrawJob& job, Population& population, const std::vector<double>& expected, double start) {
     ThinDraw& thin = thin_.emplace_back(job);
     const std::size_t triangles = job.work->triangles.size();
     const std::size_t stretches = (triangles + kStretch - 1) / kStretch;
@@ -200,14 +203,14 @@ class Sampler {
       thin.keep(from * kStretch, std::min(to * kStretch, triangles));
       intervals_.push_back({role, &population, clocks});
     };
-    keep(0, filling_, Role::exact, 0);
+    keep(0, start_, Role::exact, 0);
     for (std::size_t unit = 0; unit < expected.size(); ++unit) {
-      if (!population.is_sample(population.passed + unit)) continue;
-      const std::size_t first = filling_ + unit * kUnit;
+      if (!population.is_sample(unit, start)) continue;
+      const std::size_t first = start_ + unit * kUnit;
       keep(first - filling_, first, Role::warming, 0);
       keep(first, first + kUnit, Role::sample, expected[unit]);
     }
-    const std::size_t end = filling_ + expected.size() * kUnit;
+    const std::size_t end = start_ + expected.size() * kUnit;
     keep(end - filling_, end, Role::warming, 0);
     keep(end, stretches, Role::exact, 0);
     job = thin.job();
@@ -280,7 +283,8 @@ class Sampler {
   }
 
   const Trace& trace_;
-  const std::size_t filling_;  // stretches that run at the start of a draw, and before each sample
+  const std::size_t filling_;  // stretches that run before each sample
+  const std::size_t start_;    // and at the start of a draw
   MemoryLayout layout_;
   PreparedDraws draws_;
   std::map<State, Population> populations_;
