@@ -47,6 +47,8 @@ int number_of(const std::string& text) {
   return *number;
 }
 
+const std::string kDepth = "depth";  // that a pixel program writes
+
 bool same_bits(const Vec4& a, const Vec4& b) {
   using Bits = std::array<std::uint32_t, 4>;
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
@@ -103,13 +105,16 @@ void ShaderDebugger::record_fragment(const ShaderCase& registers) {
     inputs_[0][c] = batch->v0[c][0];
     inputs_[1][c] = batch->v1[c][0];
   }
+  const pixel::PixelProgram program(program_);
   for (const pixel::FragmentState& state :
-       pixel::PixelProgram(program_).trace(constants_, *batch, registers.textures(), registers.bump())) {
+       program.trace(constants_, *batch, registers.textures(), registers.bump())) {
     for (std::size_t i = 0; i < state.temporaries.size(); ++i)
       history_[fmt::format("r{}", i)].push_back(state.temporaries[i]);
     for (std::size_t i = 0; i < state.textures.size(); ++i)
       history_[fmt::format("t{}", i)].push_back(state.textures[i]);
+    history_[kDepth].push_back({state.depth, 0, 0, 0});
   }
+  if (program.writes_depth()) written_.insert(kDepth);
 }
 
 const std::vector<Vec4>* ShaderDebugger::find(const std::string& name) const {
@@ -160,11 +165,17 @@ void ShaderDebugger::step(std::ostream& out) {
     const auto* values = find(name);
     if (values == nullptr || !isa::find_opcode(program_.version, instruction.opcode)->has_destination)
       continue;
-    if (instruction.opcode == isa::Opcode::texkill) {
+    using enum isa::Opcode;
+    if (instruction.opcode == texkill) {
       const Vec4& read = (*values)[at_];
       const bool kills = read[0] < 0 || read[1] < 0 || read[2] < 0;
       out << fmt::format("        reads {} = {}\n        {}\n", name, text_of(read),
                          kills ? "cancels the fragment" : "keeps the fragment");
+      continue;
+    }
+    if (instruction.opcode == texdepth || instruction.opcode == texm3x2depth) {
+      out << fmt::format("        reads {} = {}\n        {} = {}\n", name, text_of((*values)[at_]), kDepth,
+                         text_of((*find(kDepth))[end]));
       continue;
     }
     out << fmt::format("        {} before = {}\n        {} after  = {}\n", name, text_of((*values)[at_]),

@@ -94,6 +94,17 @@ TEST(ShaderDebugger, ShowsWhatKillsAndWhatIsSampledFrom) {
   EXPECT_NE(cancelled.find("cancels the fragment"), std::string::npos) << cancelled;
 }
 
+TEST(ShaderDebugger, ShowsTheDepthThatAProgramWrites) {
+  const std::string text = transcript("ps_1_4\ntexcrd r5.rgb, t1\nphase\ntexdepth r5\nmov r0, v0\n",
+                                      "watch depth\ncontinue\nprint depth\n",
+                                      R"({"texcoords": {"t1": ["3e800000", "3f000000", "0", "0"]}})");
+  const std::string step = text.substr(text.find("texdepth"));  // 0.25 / 0.5
+  EXPECT_NE(step.find("reads r5 = (0.25, 0.5, 0, 0)"), std::string::npos) << text;
+  EXPECT_NE(step.find("        depth = (0.5, "), std::string::npos) << text;
+  EXPECT_NE(text.find("\ndepth = (0.5, "), std::string::npos) << text;
+  EXPECT_EQ(text.find("mov r0"), std::string::npos) << "it stops where the depth changes\n" << text;
+}
+
 TEST(ShaderDebugger, SaysWhetherAFragmentIsKilled) {
   const auto killed_by = [](const std::string& t0) {
     return transcript("ps_1_1\ntexkill t0\nmov r0, v0\n", "step\n", R"({"texcoords": {"t0": [)" + t0 + "]}}");

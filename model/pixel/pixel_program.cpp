@@ -295,6 +295,7 @@ std::vector<FragmentState> PixelProgram::trace(std::span<const Vec4> constants, 
   const auto registers = std::make_unique<Registers>();
   decoded_->prepare(constants, batch, 1, false, *registers);
   for (Lanes& component : batch.r0) component[0] = 0;  // the others are
+  batch.depth[0] = 0;
   batch.killed.reset();
   const Context context{decoded_->version, batch, 1, sampler, bump};
   const auto state = [&] {
@@ -304,6 +305,7 @@ std::vector<FragmentState> PixelProgram::trace(std::span<const Vec4> constants, 
         result.temporaries[i][c] = registers->temporaries[i][c][0];
         result.textures[i][c] = registers->textures[i][c][0];
       }
+    result.depth = batch.depth[0];
     return result;
   };
   std::vector<FragmentState> states{state()};

@@ -44,6 +44,7 @@ using BumpStages = std::array<BumpStage, kStages>;
 struct FragmentState {
   std::array<Vec4, kStages> temporaries{};
   std::array<Vec4, kStages> textures{};  // t#
+  float depth = 0;                       // of texdepth and texm3x2depth
 };
 
 // A ps_1_1 to ps_1_4 program made ready to run. Registers keep to their ranges: c# in [-1, 1], v# in [0, 1],

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -149,6 +151,17 @@ TEST(Timeline, EndsWellWhereItIsCutShort) {
   const auto cycles = cycles_of(run.timeline);
   EXPECT_TRUE(cycles.contains("commands"));
   EXPECT_EQ(kNever, observe(7, {}).cut_at);
+}
+
+// Also of what goes on there, and is known later.
+TEST(Timeline, ShowsAllThatWasBeforeItWasCutShort) {
+  const Observed cut = observe(7, {.most_bytes = 30000});
+  ASSERT_LT(cut.cut_at, cut.result.cycles);
+  ASSERT_GT(cut.cut_at, 0u);
+  auto shown = cycles_of(cut.timeline), wanted = cycles_of(observe(7, {.last = cut.cut_at - 1}).timeline);
+  shown.erase("commands");  // whole
+  wanted.erase("commands");
+  EXPECT_EQ(shown, wanted);
 }
 
 std::string timeline_of(const RandomTrace& made, const LogWindow& window) {

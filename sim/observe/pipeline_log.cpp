@@ -55,7 +55,7 @@ std::string PipelineLog::label(const VertexUnit& unit, VertexNumber number, cons
 
 void PipelineLog::taken(const VertexUnit& unit, Cycle now, std::uint64_t vertex, VertexNumber number) {
   if (now > window_.last && open_.empty()) return stop();
-  if (now >= window_.first && now <= window_.last) {
+  if (now <= window_.last) {
     const std::size_t slots = machine_->vertex_programs[unit.drawing().vertex_program].size();
     open_[{unit.number(), vertex}] = {number, now + 1, slots};
   }
@@ -69,24 +69,32 @@ void PipelineLog::taken(const VertexUnit& unit, Cycle now, std::uint64_t vertex,
 void PipelineLog::issued(const VertexUnit& unit, Cycle at, std::uint64_t vertex, const IssueSlot& slot,
                          Cycle result) {
   const auto found = open_.find({unit.number(), vertex});
-  if (found == open_.end()) return;  // taken outside of the window
-  OpenVertex& open = found->second;
-  const auto row = std::make_shared<Row>(Row{unit.number(), label(unit, open.number, slot)});
-  bytes_ += row->label.size() + kBytesBesideLabel;
-  if (bytes_ > window_.most_bytes) {
-    cut_at_ = open.next;
-    return stop();
-  }
+  if (found == open_.end()) return;  // taken behind the window
   if (at > window_.last) {
     open_.erase(found);
     return;
   }
-  const bool waits = open.next < at;
-  if (waits) waiting_.emplace(open.next, Event{row, Stage::waits, true});
-  waiting_.emplace(at, Event{row, Stage::issues, !waits});
-  waiting_.emplace(result, Event{row, Stage::ends, false});
+  OpenVertex& open = found->second;
+  if (at >= window_.first && !add_row(unit, at, open, slot, result)) return stop();
   open.next = at + 1;
   if (--open.slots_left == 0) open_.erase(found);
+}
+
+// False: it does not fit.
+bool PipelineLog::add_row(const VertexUnit& unit, Cycle at, const OpenVertex& open, const IssueSlot& slot,
+                          Cycle result) {
+  const auto row = std::make_shared<Row>(Row{unit.number(), label(unit, open.number, slot)});
+  bytes_ += row->label.size() + kBytesBesideLabel;
+  const Cycle since = std::max(open.next, window_.first);
+  if (bytes_ > window_.most_bytes) {
+    cut_at_ = since;
+    return false;
+  }
+  const bool waits = since < at;
+  if (waits) waiting_.emplace(since, Event{row, Stage::waits, true});
+  waiting_.emplace(at, Event{row, Stage::issues, !waits});
+  waiting_.emplace(result, Event{row, Stage::ends, false});
+  return true;
 }
 
 void PipelineLog::write_before(Cycle cycle) {

@@ -21,8 +21,8 @@ namespace splatscope::sim {
 // its issue until its results can be read), on the thread of its unit. Written as a stream.
 class PipelineLog final : public Observer, public IssueWatcher {
  public:
-  // Of the vertices that are taken and the slots that issue in the window. `trace` is what will be simulated.
-  // `out` and `trace` outlive the log.
+  // Of the slots that issue in the window. `trace` is what will be simulated. `out` and `trace` outlive the
+  // log.
   PipelineLog(std::ostream& out, const Trace& trace, const LogWindow& window);
 
   void begin(const SimulatedMachine& machine) override;
@@ -60,6 +60,7 @@ class PipelineLog final : public Observer, public IssueWatcher {
   std::string label(const VertexUnit& unit, VertexNumber number, const IssueSlot& slot);
   const std::string& text(const VertexUnit& unit, const IssueSlot& slot);
   const isa::Program& program(const VertexUnit& unit);
+  bool add_row(const VertexUnit& unit, Cycle at, const OpenVertex& open, const IssueSlot& slot, Cycle result);
   void write_before(Cycle cycle);
   void write(Cycle cycle, const Event& event);
   void stop();

@@ -33,8 +33,8 @@ std::string quoted(std::string name) {
 
 constexpr Cycle kCounterInterval = 256;  // cycles between two values of a counter
 constexpr std::size_t kBufferBytes = 1 << 16;
-constexpr std::size_t kMostDigits = 20;        // of a number
-constexpr std::uint64_t kShareOfCommands = 4;  // at most a quarter of the room is kept for them
+constexpr std::size_t kMostDigits = 20;  // of a number
+constexpr std::uint64_t kShareKept = 4;  // at most a quarter of the room is kept for one thing
 constexpr std::uint32_t kCommandTrack = 0;
 std::uint32_t track_of(const Unit& unit) {
   return 1 + unit.number();
@@ -101,13 +101,19 @@ void Timeline::begin(const SimulatedMachine& machine) {
   std::uint64_t commands = 0;
   for (std::size_t i = 0; i < trace_.commands.size(); ++i)
     commands += most_bytes_of(slice_head(kCommandTrack), kSliceMiddle, command_tail(trace_, i));
-  room_ = window_.most_bytes - std::min(commands, window_.most_bytes / kShareOfCommands);
   for (const auto& channel : machine.channels)
     channels_.push_back({counter_middle(channel->name(), "items")});
   for (const Unit* memory : machine.memory) {
     buses_.push_back({counter_middle(memory->name() + " data bus", "% busy")});
     data_clocks_.push_back(0);
   }
+  const auto longest = std::ranges::max_element(slice_tails_, {}, &std::string::size);
+  std::uint64_t open = 0;  // what begins before a cut and is known behind it: a slice of each unit, the buses
+  for (const std::string& head : slice_heads_) open += most_bytes_of(head, kSliceMiddle, *longest);
+  for (const Counter& bus : buses_) open += most_bytes_of(kCounterHead, bus.middle, "}}");
+  const auto kept = [&](std::uint64_t bytes) { return std::min(bytes, window_.most_bytes / kShareKept); };
+  room_behind_cut_ = window_.most_bytes - kept(commands);
+  room_ = room_behind_cut_ - kept(open);
 }
 
 void Timeline::append(std::string_view head, std::uint64_t first, std::string_view middle,
@@ -132,8 +138,8 @@ void Timeline::flush() {
 
 void Timeline::write(std::string_view head, std::uint64_t first, std::string_view middle,
                      std::uint64_t second, std::string_view tail, Cycle at) {
-  if (cut_at_ != kNever) return;
-  if (bytes_ + most_bytes_of(head, middle, tail) > room_) {
+  if (at >= cut_at_) return;
+  if (bytes_ + most_bytes_of(head, middle, tail) > (cut_at_ == kNever ? room_ : room_behind_cut_)) {
     cut_at_ = at;
     return;
   }
@@ -149,6 +155,8 @@ bool Timeline::clip(Cycle& from, Cycle& until) const {
 
 void Timeline::booked(const Unit& unit, std::uint32_t book, Cycle from, Cycle until) {
   if (book == Step::kIdle || !clip(from, until)) return;
+  if (from >= cut_at_) return;
+  until = std::min(until, cut_at_);  // of one that was open there
   write(slice_heads_[unit.number()], from, kSliceMiddle, until - from, slice_tails_[book], from);
 }
 

@@ -39,7 +39,7 @@ class Timeline final : public Observer {
   // An event: three pieces of text about two numbers.
   void append(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
               std::string_view tail);
-  // The same in the order of the run, as long as there is room; it begins at `at`.
+  // The same, as long as there is room; it begins at `at`.
   void write(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
              std::string_view tail, Cycle at);
   bool clip(Cycle& from, Cycle& until) const;
@@ -59,7 +59,9 @@ class Timeline final : public Observer {
   std::vector<char> buffer_;
   std::size_t used_ = 0;     // of it, not written yet
   std::uint64_t bytes_ = 0;  // of all events so far
-  std::uint64_t room_ = 0;   // for them: until the end of the run without what is kept for the commands
+  // For them: until the end of the run without what is kept for the commands, and up to a cut also without
+  // what is kept for the slices that are open there.
+  std::uint64_t room_ = 0, room_behind_cut_ = 0;
   Cycle cut_at_ = kNever;
 };
 
