@@ -1,5 +1,6 @@
 #include "pictures/encode.h"
 
+#include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -13,8 +14,15 @@
 #include <stdexcept>
 
 namespace splatscope::pictures {
+namespace {
 
-std::vector<std::byte> encode_png(const Picture& picture) {
+[[noreturn]] void fail(const char* why) {
+  throw std::runtime_error(std::string("a picture could not be made: ") + why);
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_png(const Picture& picture, bool (*asked_to_stop)()) {
   constexpr std::array<png_uint_32, 4> kFormats{PNG_FORMAT_GRAY, PNG_FORMAT_GA, PNG_FORMAT_RGB,
                                                 PNG_FORMAT_RGBA};
   std::vector<png_byte> bytes;
@@ -31,12 +39,14 @@ std::vector<std::byte> encode_png(const Picture& picture) {
   image.flags = PNG_IMAGE_FLAG_FAST;  // a quarter of the time, and of splats no larger
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::vector<std::byte> file(size);
+  if (asked_to_stop()) return {};
   if (png_image_write_to_memory(&image, file.data(), &size, 0, bytes.data(), 0, nullptr) == 0)
-    throw std::runtime_error(std::string("a picture could not be made: ") + image.message);
-  return {file.data(), file.data() + size};
+    fail(image.message);
+  file.resize(size);
+  return file;
 }
 
-std::vector<std::byte> encode_exr(const Picture& picture, bool (*asked_to_stop)()) {
+std::vector<std::byte> encode_exr(const Picture& picture, bool (*asked_to_stop)()) try {
   constexpr int kRows = 16;  // that are compressed together
   const auto width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
   Imf::Header header(width, height);
@@ -62,6 +72,8 @@ std::vector<std::byte> encode_exr(const Picture& picture, bool (*asked_to_stop)(
   const std::string bytes = stream.str();
   const auto all = std::as_bytes(std::span(bytes));
   return {all.begin(), all.end()};
+} catch (const Iex::BaseExc& error) {
+  fail(error.what());
 }
 
 }  // namespace splatscope::pictures

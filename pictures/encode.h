@@ -15,11 +15,11 @@ struct Picture {
 };
 
 // The bytes of a file: 8 bits a channel, grey or RGB, the last of 2 or 4 channels alpha; sRGB as it is. What
-// is not in [0, 1] goes to the nearest end, NaN to 0. Throws std::runtime_error where the library fails.
-std::vector<std::byte> encode_png(const Picture& picture);
+// is not in [0, 1] goes to the nearest end, NaN to 0. Empty where `asked_to_stop` is true before the library
+// begins, which takes a second for the largest frame. Throws std::runtime_error where the library fails.
+std::vector<std::byte> encode_png(const Picture& picture, bool (*asked_to_stop)());
 
-// The same: binary32, of several channels R, G, B and A. Empty where `asked_to_stop` is true before it is
-// done.
+// The same: binary32, of several channels R, G, B and A. It can be stopped every few rows.
 std::vector<std::byte> encode_exr(const Picture& picture, bool (*asked_to_stop)());
 
 }  // namespace splatscope::pictures

@@ -18,11 +18,9 @@ using List = std::vector<UnitLeftOut>;
 struct Draws {
   explicit Draws(std::size_t count) : draws(count) {
     trace.buffers = {{MemoryPlace::agp, {}}, {MemoryPlace::video, {}}};
-    trace.programs = {{"sampling.ps", "ps_1_1\ntex t0\nmov r0, t0\n"}};
     for (Draw& draw : draws) {
       draw.index_count = 30;
       draw.texture = 0;
-      draw.pixel_program = 0;
       draw.state = {true, true, true, true, BlendFactor::one, BlendFactor::one};
     }
   }

@@ -23,8 +23,8 @@ std::vector<GrowthRow> growth_rows(std::span<const int> sides, const Progress& p
 // line.
 double log_log_slope(const std::vector<double>& x, const std::vector<double>& y);
 
-// fixed + linear * x, both not below 0: the line through the points, all above 0, that is off by the least
-// sum of squared fractions of them. `worst`: the largest of these fractions.
+// fixed + linear * x, both not below 0: the line through the points, all above 0 and at two x or more, that
+// is off by the least sum of squared fractions of them. `worst`: the largest of these fractions.
 struct FixedAndLinear {
   double fixed = 0, linear = 0, worst = 0;
 };

@@ -15,8 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool is_asked_to_stop() {
+  return stop_signal != 0;
+}
+
 void write_exr(const pictures::Picture& picture, const fs::path& path) {
-  const std::vector<std::byte> bytes = pictures::encode_exr(picture, [] { return stop_signal != 0; });
+  const std::vector<std::byte> bytes = pictures::encode_exr(picture, is_asked_to_stop);
   stop_if_asked();
   traces::write_file(path, bytes);
 }
@@ -59,7 +63,7 @@ void write_png(const Image& image, const fs::path& path) {
 }
 
 std::vector<std::byte> encode_png(const Image& image) {
-  std::vector<std::byte> bytes = pictures::encode_png(picture_of(image, 3));
+  std::vector<std::byte> bytes = pictures::encode_png(picture_of(image, 3), is_asked_to_stop);
   stop_if_asked();
   return bytes;
 }

@@ -105,8 +105,11 @@ TEST_F(ImageFile, ThereIsNoneWhereItsMakingWasStopped) {
   const Image image = ramp();
   const pictures::Picture one{
       .width = 5, .height = 3, .channels = 3, .values = image.pixels[0].data(), .pixel_stride = 4};
-  EXPECT_TRUE(pictures::encode_exr(one, [] { return true; }).empty());
-  EXPECT_FALSE(pictures::encode_exr(one, [] { return false; }).empty());
+  for (const auto encode : {pictures::encode_png, pictures::encode_exr}) {
+    EXPECT_TRUE(encode(one, [] { return true; }).empty());
+    EXPECT_FALSE(encode(one, [] { return false; }).empty());
+    EXPECT_THROW(encode({.channels = 1}, [] { return false; }), std::runtime_error) << "of no pixel";
+  }
 }
 
 TEST_F(ImageFile, HoldsNoDate) {

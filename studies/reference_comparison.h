@@ -76,10 +76,10 @@ bool is_inside(std::span<const double> depth, int width, int height, int x, int 
 Comparison compare(const Frame& frame, const kernels::ScreenSpacePicture& reference,
                    const std::function<Frame()>& unrounded = {});
 
-// "PSNR 40.1 dB over 1234 pixels", or "no pixel is covered".
 // For results.json. A figure that no file can hold, an infinite PSNR, is null there.
 nlohmann::ordered_json json_of(const Comparison& comparison);
 
+// "PSNR 40.1 dB over 1234 pixels", or "no pixel is covered".
 std::string describe_psnr(const Comparison& comparison);
 
 // Of the summed weights where there are any; 0 where there are none.

@@ -15,7 +15,7 @@ nlohmann::ordered_json timing_json(const sim::Result& timing);
 // The parameters of a machine that the command line set: {"vertex.units": "4", "numbers.frame": "half"}.
 nlohmann::ordered_json settings_json(const Machine& machine);
 nlohmann::ordered_json programs_json(const Trace& trace);  // names and instruction slots
-// A value of --set or --sweep as it stands there: a word without the quotes that TOML wants.
+// A value of machine::describe as --set and --sweep take it: a word without the quotes that TOML wants.
 std::string unquoted(std::string_view value);
 
 // The figures of a run, as the documentation of result files lists them.

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "model/error.h"
+#include "model/machine/machine.h"
 #include "model/processes.h"
+#include "model/stop.h"
 #include "studies/json_text.h"
 #include "studies/measure.h"
 #include "studies/own_program.h"
@@ -32,14 +34,15 @@ struct Group {
 std::vector<SweptParameter> as_held(const Machine& machine, std::vector<SweptParameter> parameters) {
   for (auto& [key, values] : parameters) {
     std::set<std::string> held;
+    Machine changed = machine;
     for (std::string& value : values) {
-      Machine changed = machine;
+      stop_if_asked();
       machine::assign(changed, key + "=" + value, "--sweep");
-      const auto described = machine::describe(changed);
-      const std::string given = std::exchange(
-          value, unquoted(std::ranges::find(described, key, &machine::ParameterValue::name)->value));
+      const std::string given = std::exchange(value, unquoted(machine::value_of(changed, key)));
       if (!held.insert(value).second)
-        throw UserError("--sweep", 0, fmt::format("{} has {} twice, expected each value once", key, given));
+        throw UserError("--sweep", 0,
+                        fmt::format("{} has {}{} twice, expected each value once", key, value,
+                                    given == value ? "" : ", given as " + given + ","));
     }
   }
   return parameters;
@@ -49,8 +52,6 @@ std::vector<SweepPoint> combine(const std::vector<SweptParameter>& parameters) {
   std::vector<SweepPoint> points(1);
   for (const SweptParameter& parameter : parameters) {
     std::vector<SweepPoint> longer;
-    if (points.size() * parameter.values.size() > kMostPoints)
-      throw UserError("--sweep", 0, fmt::format("more than {} machines, expected fewer values", kMostPoints));
     for (const SweepPoint& point : points) {
       for (const std::string& value : parameter.values) {
         longer.push_back(point);
@@ -159,6 +160,12 @@ Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
     throw UserError("--fidelity", 0,
                     "functional has no time to sweep, expected throughput, sampled, cycle or referee");
   Sweep sweep;
+  std::size_t machines = 1;
+  for (const SweptParameter& parameter : parameters) {
+    machines *= parameter.values.size();
+    if (machines > kMostPoints)
+      throw UserError("--sweep", 0, fmt::format("more than {} machines, expected fewer values", kMostPoints));
+  }
   sweep.points = combine(as_held(machine, parameters));
   const std::vector<Group> groups = group(machine, sweep.points);
   const auto opened = open_input(scene_or_trace);

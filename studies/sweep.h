@@ -52,8 +52,8 @@ struct SweepOptions {
 // Every combination of the values, the last parameter running fastest, on `machine`, whose own parameters
 // need fit together only with those values. Parameters that the function depends on (numbers.*,
 // vertex.cache_entries) may be swept too: it is then computed for each. Timings run in as many processes as
-// the host has threads. Throws UserError where the input, a machine or a program is wrong, before any of it
-// is run.
+// the host has threads. Throws UserError where the input, a machine or a program is wrong, or a value is
+// there twice, before any of it is run.
 Sweep run_sweep(const std::string& scene_or_trace, const Machine& machine,
                 const std::vector<SweptParameter>& parameters, Fidelity fidelity,
                 const SweepOptions& options = {}, const Progress& progress = {});

@@ -199,11 +199,12 @@ TEST_F(Sweeps, ValuesAreThoseThatTheMachineHolds) {
   for (const auto& [point, value] : {std::pair{0, "1"}, {1, "2"}, {2, "10"}})
     EXPECT_EQ(units[static_cast<std::size_t>(point)].settings[0].second, value);
   const auto error_of = [&](const char* swept) { return splatscope::error_of([&] { points_of(swept); }); };
-  EXPECT_EQ(error_of("vertex.units=1,2,+1"), "--sweep: vertex.units has +1 twice, expected each value once");
+  EXPECT_EQ(error_of("vertex.units=1,2,+1"),
+            "--sweep: vertex.units has 1, given as +1, twice, expected each value once");
   EXPECT_EQ(error_of("numbers.frame=half,\"half\""),
-            "--sweep: numbers.frame has \"half\" twice, expected each value once");
+            "--sweep: numbers.frame has half, given as \"half\", twice, expected each value once");
   EXPECT_EQ(error_of("clock.core_megahertz=100,1e2"),
-            "--sweep: clock.core_megahertz has 1e2 twice, expected each value once");
+            "--sweep: clock.core_megahertz has 100, given as 1e2, twice, expected each value once");
 }
 
 TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {

@@ -91,7 +91,7 @@ void assign(Machine& machine, const Parameter& parameter, const toml::node& valu
                                              : value.as_floating_point()->get();
     if (!(number >= field->least && number <= field->most))
       refuse(fmt::format("is out of range ({:g})", number));
-    field->of(machine) = number;
+    field->of(machine) = number + 0.0;  // no -0
   } else if (const auto* field = std::get_if<SwitchField>(&parameter.field)) {
     if (!value.is_boolean()) refuse("has the wrong type");
     field->of(machine) = value.as_boolean()->get();
@@ -110,6 +110,18 @@ const Parameter& require(std::string_view name, const Place& place) {
   const std::string keys = group.empty() ? "" : known_keys(group);
   place.fail(keys.empty() ? fmt::format("unknown key \"{}\", expected a group of {}", name, known_keys(""))
                           : fmt::format("unknown key \"{}\", expected one of {}", name, keys));
+}
+
+// As TOML. The accessors of parameters give references to change.
+std::string value_of(Machine& machine, const Parameter& parameter) {
+  if (const auto* field = std::get_if<IntegerField>(&parameter.field))
+    return fmt::format("{}", field->of(machine));
+  if (const auto* field = std::get_if<RealField>(&parameter.field))
+    return fmt::format("{}", field->of(machine));
+  if (const auto* field = std::get_if<SwitchField>(&parameter.field))
+    return field->of(machine) ? "true" : "false";
+  const auto& choices = std::get<ChoiceField>(parameter.field);
+  return fmt::format("\"{}\"", choices.names[static_cast<std::size_t>(choices.get(machine))]);
 }
 
 // Of a value for which a file says nothing else.
@@ -319,22 +331,16 @@ void set(Machine& machine, std::string_view assignment, std::string_view option)
   check(machine);
 }
 
+std::string value_of(Machine& machine, std::string_view name) {
+  return value_of(machine, require(name, {machine.name, 0}));
+}
+
 std::vector<ParameterValue> describe(const Machine& machine) {
-  Machine copy = machine;  // the accessors give references to change
-  const auto value_of = [&](const Parameter& parameter) -> std::string {
-    if (const auto* field = std::get_if<IntegerField>(&parameter.field))
-      return fmt::format("{}", field->of(copy));
-    if (const auto* field = std::get_if<RealField>(&parameter.field))
-      return fmt::format("{}", field->of(copy));
-    if (const auto* field = std::get_if<SwitchField>(&parameter.field))
-      return field->of(copy) ? "true" : "false";
-    const auto& choices = std::get<ChoiceField>(parameter.field);
-    return fmt::format("\"{}\"", choices.names[static_cast<std::size_t>(choices.get(copy))]);
-  };
+  Machine copy = machine;
   std::vector<ParameterValue> values;
   for (const Parameter& parameter : parameters()) {
     const auto origin = machine.origins.find(parameter.name);
-    values.push_back({std::string(parameter.name), value_of(parameter), std::string(parameter.unit),
+    values.push_back({std::string(parameter.name), value_of(copy, parameter), std::string(parameter.unit),
                       range_of(parameter), std::string(parameter.what),
                       origin == machine.origins.end() ? Machine::Origin{} : origin->second});
   }

@@ -174,5 +174,8 @@ struct ParameterValue {
 };
 std::vector<ParameterValue> describe(const Machine& machine);
 
+// The value of one of them, as TOML. UserError where there is none of this name. The machine stays as it is.
+std::string value_of(Machine& machine, std::string_view name);
+
 }  // namespace machine
 }  // namespace splatscope

@@ -26,7 +26,8 @@ TEST(TextureImage, RepeatsInBothDirections) {
 TEST(TextureImage, GreyWithAlphaIsGrey) {
   const std::array<float, 2> pixel{0.2f, 1};
   const auto file = pictures::encode_png(
-      {.width = 1, .height = 1, .channels = 2, .values = pixel.data(), .pixel_stride = 2});
+      {.width = 1, .height = 1, .channels = 2, .values = pixel.data(), .pixel_stride = 2},
+      [] { return false; });
   const auto image = read_texture(file, "png");
   ASSERT_TRUE(image);
   EXPECT_EQ(image->texels, (std::vector<std::uint8_t>{51, 51, 51}));
