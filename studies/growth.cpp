@@ -163,8 +163,7 @@ void add_growth_report(Findings& findings, std::span<const GrowthRow> rows) {
   findings.report().heading("Growth with the number of surfels");
   findings.table(
       "Planes with four pixels a surfel, each time the least of some runs. Below them the slope in log-log, "
-      "and the "
-      "fixed part and that of a thousand surfels which together are off by the least.",
+      "and a fixed part and that of a thousand surfels, which together are off by the least.",
       columns, cells);
   findings.plot("growth", plot);
   findings.result("growth", std::move(results));
