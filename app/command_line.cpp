@@ -50,10 +50,8 @@ std::string one_line(std::string text) {
   constexpr std::size_t kMost = 1000, kStart = 200, kEnd = 700;  // bytes
   if (text.size() > kMost) text = text.substr(0, kStart) + " ... " + text.substr(text.size() - kEnd);
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (has_control_characters({&text[i], 1})) text[i] = ' ';
-    if (i > 0 && has_control_characters({&text[i - 1], 2})) text[i - 1] = text[i] = ' ';
-  }
+  for (std::size_t i = 0; i < text.size(); ++i)
+    std::fill_n(&text[i], leading_control_character(std::string_view(text).substr(i)), ' ');
   return text;
 }
 

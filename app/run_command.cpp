@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <cstdint>
-#include <future>
 #include <iostream>
 #include <memory>
 
@@ -152,9 +151,8 @@ void run(const Options& options, bool quiet) {
   std::optional<kernels::ScreenSpacePicture> reference;
   if (map) reference = studies::reference_of(opened, *map);
   ProgressBar recording("recording", quiet);
-  auto threads = std::async(std::launch::async, studies::start_threads);
+  studies::start_threads();
   studies::Input input = studies::make_input(std::move(opened), options.input, machine, recording.callback());
-  threads.wait();
   recording.clear();
   const std::vector<std::string> replaced = studies::replace_programs(input.trace, options.machine.programs);
   if (fidelity == studies::Fidelity::sampled || simulates_cycles(fidelity))

@@ -1,19 +1,27 @@
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <string_view>
 
 namespace splatscope {
 
-// Of a trace's program names and a machine file's texts, which go to a terminal: escape sequences do things
-// there. Those of ASCII, and U+0080 to U+009F in UTF-8.
+// Of texts that go to a terminal, where escape sequences do things: a trace's program names, what a machine
+// file says, messages.
+
+// The bytes of the control character that `text` begins with: of ASCII, or U+0080 to U+009F in UTF-8. 0:
+// none.
+inline std::size_t leading_control_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0xff;
+  };
+  if (byte(0) < ' ' || byte(0) == 0x7f) return 1;
+  return byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0 ? 2 : 0;
+}
+
 inline bool has_control_characters(std::string_view text) {
-  unsigned char before = 0;
-  return std::ranges::any_of(text, [&](unsigned char c) {
-    const bool is_long_one = before == 0xc2 && c >= 0x80 && c < 0xa0;
-    before = c;
-    return c < ' ' || c == 0x7f || is_long_one;
-  });
+  for (; !text.empty(); text.remove_prefix(1))
+    if (leading_control_character(text) != 0) return true;
+  return false;
 }
 
 }  // namespace splatscope

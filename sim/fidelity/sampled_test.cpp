@@ -80,6 +80,28 @@ void expect_books_to_add_up(const Result& result) {
 
 constexpr std::uint32_t kTriangles = 40000;
 
+// Over seeds 1 to kSeeds: how often the interval covers the truth, and the mean of the errors, which is what
+// the samples have in common.
+constexpr int kSeeds = 10;
+struct OverSeeds {
+  int covered = 0;
+  double bias = 0;  // of the cycles
+};
+template <typename Look>
+OverSeeds over_seeds(const RandomTrace& made, const Machine& machine, const Result& truth, Look look) {
+  const auto cycles = static_cast<double>(truth.cycles);
+  OverSeeds out;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Result sampled = estimate_sampled(made.trace, made.work, machine, seed);
+    const double error = static_cast<double>(sampled.cycles) - cycles;
+    out.bias += error / cycles / kSeeds;
+    out.covered += std::abs(error) <= sampled.cycles_plus_minus;
+    look(sampled);
+  }
+  return out;
+}
+
 class Machines : public ::testing::TestWithParam<std::vector<std::string>> {};
 
 // Each in its own bottleneck: vertices, memory, memory without reordering, setup, setup behind a queue that
@@ -90,15 +112,7 @@ TEST_P(Machines, TheIntervalCoversTheTruthAndIsNarrow) {
   const RandomTrace made = splats(kTriangles, 7);
   const Result truth = simulate(made.trace, made.work, machine);
   const auto cycles = static_cast<double>(truth.cycles);
-  int covered = 0;
-  double bias = 0;
-  constexpr int kSeeds = 10;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    const Result sampled = estimate_sampled(made.trace, made.work, machine, seed);
-    const double error = static_cast<double>(sampled.cycles) - cycles;
-    bias += error / cycles / kSeeds;
-    covered += std::abs(error) <= sampled.cycles_plus_minus;
+  const auto [covered, bias] = over_seeds(made, machine, truth, [&](const Result& sampled) {
     EXPECT_GT(sampled.cycles_plus_minus, 0);
     EXPECT_LE(sampled.cycles_plus_minus, 0.065 * cycles);  // 47 samples of what scatters by a fifth
     ASSERT_EQ(sampled.units.size(), truth.units.size());
@@ -109,7 +123,7 @@ TEST_P(Machines, TheIntervalCoversTheTruthAndIsNarrow) {
       EXPECT_NEAR(static_cast<double>(a.busy), static_cast<double>(truth.units[i].busy), 0.05 * cycles)
           << a.name;
     }
-  }
+  });
   EXPECT_GE(covered, 9);            // 19 of 20 are promised
   EXPECT_LE(std::abs(bias), 0.01);  // the mean of 10: what the samples have in common
 }
@@ -148,22 +162,16 @@ TEST(Sampled, EveryFrameAndAllTogetherLieInTheirIntervals) {
         std::vector<FrameOfSplats>{{5000}, {28000, 1}, {50000}, {30000, 12}}}) {
     const RandomTrace made = frames_of_two_draws(frames, 128);
     const Result truth = simulate(made.trace, made.work, machine);
-    int covered = 0;
     std::vector<int> frames_covered(frames.size());
-    constexpr int kSeeds = 10;
-    const auto within = [](Cycle estimate, Cycle cycles, double plus_minus) {
-      return std::abs(static_cast<double>(estimate) - static_cast<double>(cycles)) <= plus_minus;
-    };
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-      const Result sampled = estimate_sampled(made.trace, made.work, machine, seed);
-      covered += within(sampled.cycles, truth.cycles, sampled.cycles_plus_minus);
+    const auto [covered, bias] = over_seeds(made, machine, truth, [&](const Result& sampled) {
       ASSERT_EQ(sampled.frame_cycles.size(), frames.size());
       for (std::size_t i = 0; i < frames.size(); ++i) {
         EXPECT_LE(sampled.frame_plus_minus[i], sampled.cycles_plus_minus);
-        frames_covered[i] +=
-            within(sampled.frame_cycles[i], truth.frame_cycles[i], sampled.frame_plus_minus[i]);
+        const double error =
+            static_cast<double>(sampled.frame_cycles[i]) - static_cast<double>(truth.frame_cycles[i]);
+        frames_covered[i] += std::abs(error) <= sampled.frame_plus_minus[i];
       }
-    }
+    });
     EXPECT_GE(covered, 9) << "seeds 1 to 10";
     for (std::size_t i = 0; i < frames.size(); ++i)
       EXPECT_GE(frames_covered[i], 9) << "frame " << i << ", seeds 1 to 10";
@@ -182,17 +190,9 @@ TEST(Sampled, ManyDrawsAlikeLieInTheirInterval) {
     made.work.back().command = copy + 1;
   }
   const Result truth = simulate(made.trace, made.work, machine);
-  const auto cycles = static_cast<double>(truth.cycles);
-  int covered = 0;
-  double bias = 0;
-  constexpr int kSeeds = 10;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const Result sampled = estimate_sampled(made.trace, made.work, machine, seed);
-    const double error = static_cast<double>(sampled.cycles) - cycles;
-    bias += error / cycles / kSeeds;
-    covered += std::abs(error) <= sampled.cycles_plus_minus;
-    EXPECT_LE(sampled.cycles_plus_minus, 0.1 * cycles);
-  }
+  const auto [covered, bias] = over_seeds(made, machine, truth, [&](const Result& sampled) {
+    EXPECT_LE(sampled.cycles_plus_minus, 0.1 * static_cast<double>(truth.cycles));
+  });
   EXPECT_GE(covered, 9) << "seeds 1 to 10";
   EXPECT_LE(std::abs(bias), 0.01);
 }
