@@ -40,6 +40,8 @@ void print(const studies::Sweep& sweep) {
   }
   for (const auto& path : sweep.damaged)
     std::cout << path.string() << ": damaged or of another format; computed again\n";
+  for (const std::string& why : sweep.not_kept)
+    std::cout << why << "; the work is not kept for later sweeps\n";
 }
 
 void run(const Options& options, bool quiet) {

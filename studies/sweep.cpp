@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -111,7 +112,11 @@ WorkStream work_of(const Trace& trace, const Machine& machine, const std::option
   if (found == WorkCache::Found::damaged) sweep.damaged.push_back(cache->path_of(key));
   ++sweep.functions;
   stream = compute(trace, options);
-  cache->write(key, stream);
+  try {
+    cache->write(key, stream);
+  } catch (const std::runtime_error& error) {  // a full disk, or a folder for reading alone
+    sweep.not_kept.push_back(error.what());
+  }
   return stream;
 }
 

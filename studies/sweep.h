@@ -37,6 +37,7 @@ struct Sweep {
   std::size_t functions = 0;                   // computed: one for each set of number formats
   std::size_t from_cache = 0;                  // read from the cache instead
   std::vector<std::filesystem::path> damaged;  // of the cache: computed again
+  std::vector<std::string> not_kept;           // why work that was computed is not in the cache
   std::vector<std::string> replaced;           // programs, a line for people on each
   std::optional<std::uint64_t> seed;           // of the samples of `sampled`
   double host_seconds = 0;

@@ -147,6 +147,17 @@ TEST_F(Sweeps, ACacheServesLaterSweepsAndADamagedOneIsRebuilt) {
             run_sweep(file, machine, swept, Fidelity::throughput).points[1].results);
 }
 
+TEST_F(Sweeps, ACacheThatCannotBeWrittenCostsNoResult) {
+  const std::vector<SweptParameter> swept{{"vertex.units", {"1", "2"}}};
+  const std::filesystem::path cache = folder / "cache";
+  const auto lose_the_folder = [&](const Opened&) { std::filesystem::remove_all(cache); };
+  const Sweep sweep =
+      run_sweep(file, machine, swept, Fidelity::cycle, {.cache = cache, .before_work = lose_the_folder});
+  ASSERT_EQ(sweep.not_kept.size(), 1u);
+  EXPECT_TRUE(sweep.not_kept[0].starts_with(cache.string() + "/")) << sweep.not_kept[0];
+  EXPECT_EQ(sweep.points[1].results, run_sweep(file, machine, swept, Fidelity::cycle).points[1].results);
+}
+
 // JSON holds no infinity.
 TEST(TimingJson, AFrameOfNoTimeHasNoRate) {
   Machine machine = machine::load(machine::kGeForce4);

@@ -235,10 +235,13 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
   return key;
 }
 
-WorkCache::WorkCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+WorkCache::WorkCache(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder_, error)) made_.emplace(folder_);
+}
 
 std::filesystem::path WorkCache::path_of(const std::string& key) const {
-  return folder_.path() / (key + ".work");
+  return folder_ / (key + ".work");
 }
 
 WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, WorkStream& stream) const {

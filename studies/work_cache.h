@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,19 +25,20 @@ std::string work_key(const Trace& trace, const RenderOptions& options);
 // Work streams in a folder, a file each, under their keys.
 class WorkCache {
  public:
-  // Throws UserError where the folder cannot be made or written.
+  // Throws UserError where there is no such folder and none can be made.
   explicit WorkCache(std::filesystem::path folder);
 
   enum class Found { yes, no, damaged };
   // The stream of `key`, checked against its checksum and `trace`. `damaged`: what stands there is of another
   // format or key, cut short or changed; the caller computes it again. UserError where it is no file.
   Found read(const std::string& key, const Trace& trace, WorkStream& stream) const;
-  // Appears whole or not at all.
+  // Appears whole or not at all; UserError where it cannot be, std::runtime_error where the disk is full.
   void write(const std::string& key, const WorkStream& stream) const;
   std::filesystem::path path_of(const std::string& key) const;
 
  private:
-  traces::OutputFolder folder_;
+  std::filesystem::path folder_;
+  std::optional<traces::OutputFolder> made_;  // one that stands already may be for reading alone
 };
 
 }  // namespace splatscope::studies

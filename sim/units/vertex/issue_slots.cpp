@@ -158,7 +158,9 @@ class Reorder {
     for (std::size_t i = count_; i-- > 0;) {
       for (std::size_t j = i + 1; j < count_; ++j) {
         const int apart = distance(i, j);
-        if (apart >= 0) nodes_[i].height = std::max(nodes_[i].height, nodes_[j].height + apart);
+        if (apart < 0) continue;
+        nodes_[i].height = std::max(nodes_[i].height, nodes_[j].height + apart);
+        ++nodes_[j].waits_for;
       }
     }
   }
@@ -183,13 +185,13 @@ class Reorder {
   }
 
  private:
-  static constexpr int kNotPlaced = -1;
-
   struct Node {
     ComponentMask reads;
     ComponentMask writes;
-    int height = 0;  // slots to the end of the longest chain behind it
-    int slot = kNotPlaced;
+    int height = 0;     // slots to the end of the longest chain behind it
+    int waits_for = 0;  // that are not placed and have to stand before it
+    int earliest = 0;   // slot, by those that are placed
+    bool placed = false;
   };
 
   // Slots that `later` must stand behind `earlier`; -1: they are independent.
@@ -203,12 +205,9 @@ class Reorder {
   }
 
   bool is_ready(std::size_t index) const {
-    if (is_scalar(parts_[index].instruction.opcode) && now_ < scalar_free_) return false;
-    for (std::size_t i = 0; i < index; ++i) {
-      const int apart = distance(i, index);
-      if (apart >= 0 && (nodes_[i].slot == kNotPlaced || nodes_[i].slot + apart > now_)) return false;
-    }
-    return true;
+    const Node& node = nodes_[index];
+    return !node.placed && node.waits_for == 0 && node.earliest <= now_ &&
+           !(is_scalar(parts_[index].instruction.opcode) && now_ < scalar_free_);
   }
 
   // The ready instruction with the longest chain behind it, of those that pair with `partner` (count_: any at
@@ -216,7 +215,7 @@ class Reorder {
   std::size_t best(std::size_t partner) const {
     std::size_t chosen = count_;
     for (std::size_t i = 0; i < count_; ++i) {
-      if (nodes_[i].slot != kNotPlaced || !is_ready(i)) continue;
+      if (!is_ready(i)) continue;
       if (partner != count_ &&
           !can_pair(parts_[std::min(i, partner)].instruction, parts_[std::max(i, partner)].instruction)) {
         continue;
@@ -227,7 +226,13 @@ class Reorder {
   }
 
   void place(std::size_t index, IssueSlot& slot) {
-    nodes_[index].slot = now_;
+    nodes_[index].placed = true;
+    for (std::size_t j = index + 1; j < count_; ++j) {
+      const int apart = distance(index, j);
+      if (apart < 0) continue;
+      --nodes_[j].waits_for;
+      nodes_[j].earliest = std::max(nodes_[j].earliest, now_ + apart);
+    }
     if (is_scalar(parts_[index].instruction.opcode)) scalar_free_ = now_ + scalar_gap_;
     add(slot, parts_[index]);
   }
