@@ -71,6 +71,16 @@ class KeyDepthCheck {
 
 }  // namespace
 
+std::string file_bytes(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  std::string bytes(error ? 0 : size, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
 std::string read_text_file(const std::filesystem::path& path, std::string_view expected) {
   std::error_code error;
   const bool folder = std::filesystem::is_directory(path, error);

@@ -16,6 +16,9 @@ inline constexpr std::size_t kMostTextBytes = 1 << 20;
 // is read.
 std::string read_text_file(const std::filesystem::path& path, std::string_view expected);
 
+// All of a regular file, or what of it can be read.
+std::string file_bytes(const std::filesystem::path& path);
+
 // The text as a string of TOML, in quotes.
 std::string toml_string(const std::string& text);
 

@@ -159,7 +159,7 @@ TEST(Simulate, UnitsThatNoDrawNeedsAreLeftOut) {
   EXPECT_EQ(books_of(simulate(made.trace, made.work, machine), "depth"), nullptr);
 }
 
-// A texture that the pixel program does not sample is as none, on the machine and in an estimate.
+// A texture that the pixel program does not sample is as none.
 TEST(Simulate, ATextureThatNoProgramSamplesCostsNothing) {
   RandomTrace made = simple_trace(10);
   for (QuadWork& quad : made.work[0].quads) quad.texel_block_count = 0;
@@ -288,7 +288,6 @@ TEST(Simulate, AProgramThatDoesNotLoadIsAUsersError) {
   EXPECT_THROW(simulate(made.trace, made.work, Machine{}), UserError);
 }
 
-// What `run` says of the user's fault; empty: nothing.
 TEST(Simulate, ATimeThatCannotBeCountedIsAUsersError) {
   Machine machine = machine::load(machine::kGeForce4);
   machine::set(machine, "host.command_nanoseconds=1e9");

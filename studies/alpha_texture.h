@@ -28,7 +28,7 @@ struct TextureRow {
 TextureRow describe_texture(double cutoff, int length);
 
 // The smallest size from which on no texture leaves out a value between neighbours: Eq. 15, on the texels
-// themselves. Sizes up to twice that of Eq. 16 are tried.
+// themselves. That of Eq. 16 leaves none out; smaller ones are tried, one after the other.
 int least_length(double cutoff);
 
 // Pictures of `scene`, which shows a single surface, by textures of `lengths`, with its cutoff.

@@ -97,9 +97,12 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
       return sim::estimate_sampled(trace, work, machine, options.seed);
     case Fidelity::referee:
       return sim::simulate(trace, work, machine, sim::Scheduler::referee, progress, options.observers);
-    default:
+    case Fidelity::cycle:
       return sim::simulate(trace, work, machine, sim::Scheduler::skip_ahead, progress, options.observers);
+    case Fidelity::functional:
+      break;
   }
+  throw ModelError("functional has no time");
 }
 
 int slots_of(const ShaderText& program) {

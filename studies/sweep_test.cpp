@@ -222,7 +222,7 @@ TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {
   const auto error_of = [](const std::vector<std::string>& swept, const std::vector<std::string>& set) {
     return splatscope::error_of([&] { swept_parameters(swept, set); });
   };
-  EXPECT_EQ(error_of({"vertex.units=1,2", "memory.channels=1"}, {"vertex.issue_slots=2"}), "no error");
+  EXPECT_EQ(error_of({"vertex.units=1,2", "memory.channels=1"}, {"vertex.threads=2"}), "no error");
   EXPECT_EQ(error_of({"vertex.units=1,2", "vertex.units=3"}, {}),
             "--sweep: vertex.units is given twice, expected all its values in one --sweep");
   EXPECT_EQ(error_of({"vertex.units=1,2"}, {"vertex.units=3"}),

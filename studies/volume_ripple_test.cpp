@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernels/reference/volume/volume_rendering.h"
+
 namespace splatscope::studies {
 namespace {
 
@@ -35,8 +37,9 @@ TEST(VolumeRipple, IsThatOfTheSumOfTruncatedGaussians) {
 }
 
 TEST(VolumeRipple, IsSmallAtTheDefaultCutoffAndLargeAtThePapers) {
+  const double cutoff = kernels::VolumeSettings{}.cutoff;
   for (const double pitch : {1.03, 2.11}) {
-    EXPECT_LT(layer_ripple(11, pitch), 0.0025) << pitch;
+    EXPECT_LT(layer_ripple(cutoff, pitch), 0.0025) << pitch;
     EXPECT_GT(layer_ripple(4, pitch), 0.02) << pitch;
     EXPECT_LT(layer_ripple(30, pitch), 1e-5) << pitch;  // of whole Gaussians: 2 e^(-2 pi^2) an axis
   }

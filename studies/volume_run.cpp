@@ -27,8 +27,8 @@ std::string warning_of_none(std::size_t drawn, std::size_t left_out) {
   if (drawn > 0) return "";
   return fmt::format("warning: no splat is drawn, so the picture is its background: {}\n",
                      left_out > 0
-                         ? "each is before the near plane, outside of the picture, or without a finite "
-                           "footprint"
+                         ? "each is before the near plane, beyond the far plane, outside of the picture, or "
+                           "without a finite footprint"
                          : "no voxel has any opacity, or a cell of any size");
 }
 

@@ -8,13 +8,13 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <span>
 #include <stdexcept>
 #include <tuple>
 #include <type_traits>
 
 #include "model/error.h"
+#include "model/input_file.h"
 #include "model/primitive/primitive.h"
 #include "sim/draw_jobs.h"
 #include "sim/observe/tile_cycles.h"
@@ -44,15 +44,6 @@ Key key_of(std::string_view digits) {
   Key key{};
   std::ranges::copy(digits.substr(0, kKeyDigits), key.begin());
   return key;
-}
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return {};
-  std::string bytes(static_cast<std::size_t>(file.tellg()), '\0');
-  file.seekg(0);
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  return file ? bytes : std::string{};
 }
 
 // All of them by name: one more does not compile until it is here too.
@@ -217,7 +208,7 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
   Writer text;
   const std::vector<std::byte> stored = traces::trace_bytes(trace, "--cache");
   constexpr const char* kProgram = "/proc/self/exe";
-  const std::string program = bytes_of(kProgram);
+  const std::string program = file_bytes(kProgram);
   if (program.empty())
     throw UserError(kProgram, 0, "cannot be read, expected this program, whose work is kept by its bytes");
   // All of them by name: one more does not compile until it is here too.
@@ -251,7 +242,7 @@ WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, Wor
   if (type == std::filesystem::file_type::not_found) return Found::no;
   if (type != std::filesystem::file_type::regular)
     throw UserError(path.string(), 0, "stands in the place of a file of the cache, expected that or nothing");
-  const std::string bytes = bytes_of(path);
+  const std::string bytes = file_bytes(path);
   Header header;
   if (bytes.size() < sizeof header) return Found::damaged;
   std::memcpy(&header, bytes.data(), sizeof header);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 
+#include "model/stop.h"
 #include "model/work/work.h"
 
 namespace splatscope::studies {
@@ -17,11 +18,12 @@ class WorkQueue {
  public:
   static constexpr std::size_t kAhead = 4;  // draws that wait
 
-  // ---- those that compute, one at a time; waits while there is no room
+  // ---- those that compute, one at a time; waits while there is no room. Throws Interrupted after stop().
   void put(DrawWork work) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return waiting_.size() < kAhead || stopped_; });
-    if (!stopped_) waiting_.push_back(std::move(work));
+    if (stopped_) throw Interrupted();
+    waiting_.push_back(std::move(work));
     changed_.notify_all();
   }
   // No more comes, for this reason.

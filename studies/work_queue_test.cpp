@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <thread>
 
@@ -19,10 +20,14 @@ DrawWork work_of(std::uint32_t command) {
 TEST(WorkQueue, DrawsComeInOrderThoughFewCanWait) {
   constexpr std::uint32_t kDraws = 10 * WorkQueue::kAhead;
   WorkQueue queue;
+  std::atomic<std::uint32_t> made = 0;
   std::thread maker([&] {
-    for (std::uint32_t i = 0; i < kDraws; ++i) queue.put(work_of(i));
+    for (; made < kDraws; ++made) queue.put(work_of(made));
   });
-  for (std::uint32_t i = 0; i < kDraws; ++i) EXPECT_EQ(queue.next().command, i);
+  for (std::uint32_t i = 0; i < kDraws; ++i) {
+    EXPECT_EQ(queue.next().command, i);
+    EXPECT_LE(made, i + 1 + WorkQueue::kAhead);
+  }
   maker.join();
 }
 
@@ -34,10 +39,14 @@ TEST(WorkQueue, AFailureComesAfterWhatWasMadeBefore) {
   EXPECT_THROW(queue.next(), std::runtime_error);
 }
 
-TEST(WorkQueue, AfterAStopNothingWaits) {
+TEST(WorkQueue, AStopEndsTheOneThatWaitsToPut) {
   WorkQueue queue;
   std::thread maker([&] {
-    for (std::uint32_t i = 0; i < 3 * WorkQueue::kAhead; ++i) queue.put(work_of(i));
+    EXPECT_THROW(
+        {
+          for (std::uint32_t i = 0;; ++i) queue.put(work_of(i));
+        },
+        Interrupted);
   });
   queue.next();
   queue.stop();

@@ -70,8 +70,8 @@ TEST(VolumeCommand, SaysWhereNothingIsDrawnAndWhy) {
   };
   const std::string start = "warning: no splat is drawn, so the picture is its background: ";
   EXPECT_NE(said("away.toml")
-                .find(start + "each is before the near plane, outside of the picture, or without "
-                              "a finite footprint\n"),
+                .find(start + "each is before the near plane, beyond the far plane, outside of the "
+                              "picture, or without a finite footprint\n"),
             std::string::npos);
   EXPECT_NE(said("clear.toml").find(start + "no voxel has any opacity, or a cell of any size\n"),
             std::string::npos);

@@ -279,7 +279,6 @@ TEST(Recorder, CornersKeepTheirWeightsInEveryProgram) {
   }
 }
 
-// Culling goes by how a quad winds: the front of a model is what every program leaves.
 // The three short programs draw what the paper's does.
 void expect_same_by_every_program(Scene scene) {
   const splatscope::Frame paper = frames_of(record(scene, NumberFormats{}).trace).back();
@@ -289,6 +288,7 @@ void expect_same_by_every_program(Scene scene) {
   }
 }
 
+// Culling goes by how a quad winds: the front of a model is what every program leaves.
 TEST(Recorder, DrawsAModelByEveryProgram) {
   const Scene scene = parse_scene(
       "[surfels]\ngenerator = \"sphere\"\ncount = 2000\n[frame]\nwidth = 64\nheight = 64\n"

@@ -12,13 +12,6 @@ namespace {
 
 constexpr double kFar = 1e30;  // no scene needs more, and squares of it still fit a double
 
-template <class... Parts>
-struct Overloaded : Parts... {
-  using Parts::operator()...;
-};
-template <class... Parts>
-Overloaded(Parts...) -> Overloaded<Parts...>;
-
 using S = SceneSettings;
 
 std::vector<std::string_view> names_of(std::span<const kernels::SplatProgram> programs) {

@@ -107,6 +107,14 @@ struct SceneKey {
       value;
 };
 
+// Of lambdas, one for each kind of value, for std::visit.
+template <class... Parts>
+struct Overloaded : Parts... {
+  using Parts::operator()...;
+};
+template <class... Parts>
+Overloaded(Parts...) -> Overloaded<Parts...>;
+
 std::span<const SceneKey> scene_keys();
 std::span<const SceneKey> volume_keys();  // those of [volume], which are among them
 

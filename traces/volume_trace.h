@@ -30,7 +30,7 @@ struct VolumeTraceSettings {
 struct VolumeCounts {
   std::size_t splats = 0;    // drawn
   std::size_t flat = 0;      // of these: flattened across their gradient
-  std::size_t left_out = 0;  // before the near plane, outside of the frame, or without a finite footprint
+  std::size_t left_out = 0;  // not between near and far plane, outside of the frame, or no finite footprint
   std::size_t sheets = 0;    // drawn: those with a splat in the frame
   std::size_t vertex_bytes = 0;
 };

@@ -62,6 +62,8 @@ void normalize(const FastBand& band, FastPicture& picture) {
 
 }  // namespace
 
+static_assert(RowBands::kChunk % FastSurfels::kPadding == 0);  // prepare_splats begins at whole registers
+
 FastTable::FastTable(double cutoff)
     : limit(static_cast<float>(2 * cutoff)), scale(static_cast<float>(kSteps / (2 * cutoff))) {
   for (int i = 0; i <= kSteps; ++i) {

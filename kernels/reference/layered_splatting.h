@@ -16,7 +16,7 @@ namespace splatscope::kernels {
 struct LayeredSettings {
   bool prefilter = true;
   double cutoff = 2.0;           // c of Ren 2002, Eq. 14: the radial index ends at 2c, the 4 of section 7.1
-  double same_surface = 0;       // camera z, > 0: contributions closer than this are of one surface
+  double same_surface = 0;       // camera z: contributions closer than this are of one surface; 0: none are
   int layers = 1;                // of a pixel, at least 1; the nearest are kept
   double whole_weight = 0;       // summed weight from which a layer covers its pixel; 0: any weight does
   bool cull_back_faces = false;  // surfels whose normal s x t points away from the eye are left out

@@ -31,6 +31,7 @@ struct Analysis {
   int most_live_temporaries = 0;  // registers r# with a live component, at most
 };
 
+// Of a program that validate() finds right.
 Analysis analyze(const Program& program);
 
 // Of each instruction, whether its result can depend on one of the given vertex inputs (bit i: v<i>).

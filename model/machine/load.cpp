@@ -84,17 +84,17 @@ void assign(Machine& machine, const Parameter& parameter, const toml::node& valu
     const std::int64_t number = value.as_integer()->get();
     if (number < field->least || number > field->most) refuse(fmt::format("is out of range ({})", number));
     if (field->power_of_two && (number & (number - 1)) != 0) refuse(fmt::format("is {}", number));
-    field->of(machine) = static_cast<int>(number);
+    field->set(machine, static_cast<int>(number));
   } else if (const auto* field = std::get_if<RealField>(&parameter.field)) {
     if (!value.is_number()) refuse("has the wrong type");
     const double number = value.is_integer() ? static_cast<double>(value.as_integer()->get())
                                              : value.as_floating_point()->get();
     if (!(number >= field->least && number <= field->most))
       refuse(fmt::format("is out of range ({:g})", number));
-    field->of(machine) = number + 0.0;  // no -0
+    field->set(machine, number + 0.0);  // no -0
   } else if (const auto* field = std::get_if<SwitchField>(&parameter.field)) {
     if (!value.is_boolean()) refuse("has the wrong type");
-    field->of(machine) = value.as_boolean()->get();
+    field->set(machine, value.as_boolean()->get());
   } else {
     const auto& choices = std::get<ChoiceField>(parameter.field);
     if (!value.is_string()) refuse("has the wrong type");
@@ -112,16 +112,18 @@ const Parameter& require(std::string_view name, const Place& place) {
                           : fmt::format("unknown key \"{}\", expected one of {}", name, keys));
 }
 
-// As TOML. The accessors of parameters give references to change.
-std::string value_of(Machine& machine, const Parameter& parameter) {
+// As TOML.
+std::string value_of(const Machine& machine, const Parameter& parameter) {
   if (const auto* field = std::get_if<IntegerField>(&parameter.field))
-    return fmt::format("{}", field->of(machine));
+    return fmt::format("{}", field->get(machine));
   if (const auto* field = std::get_if<RealField>(&parameter.field))
-    return fmt::format("{}", field->of(machine));
+    return fmt::format("{}", field->get(machine));
   if (const auto* field = std::get_if<SwitchField>(&parameter.field))
-    return field->of(machine) ? "true" : "false";
+    return field->get(machine) ? "true" : "false";
   const auto& choices = std::get<ChoiceField>(parameter.field);
-  return fmt::format("\"{}\"", choices.names[static_cast<std::size_t>(choices.get(machine))]);
+  const auto choice = static_cast<std::size_t>(choices.get(machine));
+  if (choice >= choices.names.size()) throw ModelError(fmt::format("{} has no such choice", parameter.name));
+  return fmt::format("\"{}\"", choices.names[choice]);
 }
 
 // Of a value for which a file says nothing else.
@@ -205,6 +207,7 @@ void check_together(const Machine& machine, std::string_view file) {
        machine.memory.row_bytes},
       {"memory.channel_bytes_per_clock", machine.memory.channel_bytes_per_clock, "memory.burst_bytes",
        machine.memory.burst_bytes},
+      {"fetch.cache_ways", machine.fetch.cache_ways, "fetch.cache_lines", machine.fetch.cache_lines},
       {"depth.cache_ways", machine.depth.cache_ways, "depth.cache_lines", machine.depth.cache_lines},
       {"texture.cache_ways", machine.texture.cache_ways, "texture.cache_lines", machine.texture.cache_lines},
       {"blend.cache_ways", machine.blend.cache_ways, "blend.cache_lines", machine.blend.cache_lines},
@@ -331,16 +334,15 @@ void set(Machine& machine, std::string_view assignment, std::string_view option)
   check(machine);
 }
 
-std::string value_of(Machine& machine, std::string_view name) {
+std::string value_of(const Machine& machine, std::string_view name) {
   return value_of(machine, require(name, {machine.name, 0}));
 }
 
 std::vector<ParameterValue> describe(const Machine& machine) {
-  Machine copy = machine;
   std::vector<ParameterValue> values;
   for (const Parameter& parameter : parameters()) {
     const auto origin = machine.origins.find(parameter.name);
-    values.push_back({std::string(parameter.name), value_of(copy, parameter), std::string(parameter.unit),
+    values.push_back({std::string(parameter.name), value_of(machine, parameter), std::string(parameter.unit),
                       range_of(parameter), std::string(parameter.what),
                       origin == machine.origins.end() ? Machine::Origin{} : origin->second});
   }

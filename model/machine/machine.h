@@ -32,6 +32,7 @@ struct Machine {
   struct Fetch {
     int line_bytes = 64;
     int cache_lines = 16;
+    int cache_ways = 4;
     int pending_vertices = 16;
     int index_lines = 4;
     int indices_per_clock = 1;
@@ -174,8 +175,8 @@ struct ParameterValue {
 };
 std::vector<ParameterValue> describe(const Machine& machine);
 
-// The value of one of them, as TOML. UserError where there is none of this name. The machine stays as it is.
-std::string value_of(Machine& machine, std::string_view name);
+// The value of one of them, as TOML. UserError where there is none of this name.
+std::string value_of(const Machine& machine, std::string_view name);
 
 }  // namespace machine
 }  // namespace splatscope

@@ -5,29 +5,33 @@
 namespace splatscope::machine {
 namespace {
 
-template <auto Group, auto Member>
-auto& member(Machine& machine) {
+template <typename Value, auto Group, auto Member>
+Value get(const Machine& machine) {
   return (machine.*Group).*Member;
+}
+template <typename Value, auto Group, auto Member>
+void set(Machine& machine, Value value) {
+  (machine.*Group).*Member = value;
 }
 
 template <auto Group, auto Member>
 IntegerField integer(int least, int most) {
-  return {&member<Group, Member>, least, most};
+  return {&get<int, Group, Member>, &set<int, Group, Member>, least, most};
 }
 
 template <auto Group, auto Member>
 IntegerField power_of_two(int least, int most) {
-  return {&member<Group, Member>, least, most, true};
+  return {&get<int, Group, Member>, &set<int, Group, Member>, least, most, true};
 }
 
 template <auto Group, auto Member>
 RealField real(double least, double most) {
-  return {&member<Group, Member>, least, most};
+  return {&get<double, Group, Member>, &set<double, Group, Member>, least, most};
 }
 
 template <auto Group, auto Member>
 SwitchField on_off() {
-  return {&member<Group, Member>};
+  return {&get<bool, Group, Member>, &set<bool, Group, Member>};
 }
 
 template <auto Member>
@@ -97,6 +101,7 @@ std::vector<Parameter> geometry_parameters() {
        "one read of indices or vertices"},
       {"fetch.cache_lines", "lines", power_of_two<&M::fetch, &M::Fetch::cache_lines>(4, 1024),
        "lines of vertices kept"},
+      {"fetch.cache_ways", "ways", power_of_two<&M::fetch, &M::Fetch::cache_ways>(1, 16), "its ways"},
       {"fetch.pending_vertices", "vertices", integer<&M::fetch, &M::Fetch::pending_vertices>(1, 1024),
        "read ahead, waiting for their lines"},
       {"fetch.index_lines", "lines", integer<&M::fetch, &M::Fetch::index_lines>(1, 64),

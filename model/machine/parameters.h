@@ -9,16 +9,19 @@
 namespace splatscope::machine {
 
 struct IntegerField {
-  int& (*of)(Machine&);
+  int (*get)(const Machine&);
+  void (*set)(Machine&, int);
   int least, most;
   bool power_of_two = false;  // address arithmetic splits it by bits
 };
 struct RealField {
-  double& (*of)(Machine&);
+  double (*get)(const Machine&);
+  void (*set)(Machine&, double);
   double least, most;
 };
 struct SwitchField {
-  bool& (*of)(Machine&);
+  bool (*get)(const Machine&);
+  void (*set)(Machine&, bool);
 };
 // One of a few names, kept as an enumeration: the place of the name in `names` is its value.
 struct ChoiceField {

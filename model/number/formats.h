@@ -19,7 +19,8 @@ enum class FrameRounding : std::uint8_t { nearest, truncate, dither };
 enum class ColorFormat : std::uint8_t { unorm8, float32, unorm12 };
 
 // Results in the pixel unit: binary32 within the version's range; the 9-bit signed steps (1/255) of the
-// combiners of 2002; or binary32 without a range (to compare with implementations that have none).
+// combiners of 2002; or binary32 without a range (to compare with implementations that have none;
+// no machine has it).
 enum class CombinerFormat : std::uint8_t { float32, signed9, unbounded };
 
 enum class DepthFormat : std::uint8_t { z16, z24, float32 };

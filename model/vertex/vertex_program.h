@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/command/commands.h"
+#include "model/isa/opcode.h"
 #include "model/isa/program.h"
 #include "model/number/formats.h"
 
@@ -25,7 +26,7 @@ std::optional<int> output_of(isa::RegisterFile file, int index);
 
 // Registers of a batch, structure of arrays: [register][component][vertex].
 struct InputBatch {
-  alignas(64) float v[16][4][kBatch];
+  alignas(64) float v[isa::kVertexInputs][4][kBatch];
 };
 struct OutputBatch {
   alignas(64) float o[kOutputs][4][kBatch];
@@ -43,7 +44,7 @@ struct NextVertices {
 
 // Registers of one vertex between two instructions.
 struct VertexState {
-  std::array<Vec4, 12> temporaries{};
+  std::array<Vec4, isa::kVertexTemporaries> temporaries{};
   std::array<Vec4, kOutputs> outputs{};
   int address = 0;  // a0.x
 };

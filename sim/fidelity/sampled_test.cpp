@@ -146,6 +146,7 @@ TEST_P(SmallDraws, MayStandBesideASampledOne) {
   const Result truth = simulate(made.trace, made.work, machine);
   const Result sampled = estimate_sampled(made.trace, made.work, machine);
   EXPECT_GT(sampled.cycles_plus_minus, 0);
+  EXPECT_LE(sampled.cycles_plus_minus, 0.1 * static_cast<double>(truth.cycles));
   EXPECT_NEAR(static_cast<double>(sampled.cycles), static_cast<double>(truth.cycles),
               sampled.cycles_plus_minus);
   expect_books_to_add_up(sampled);
@@ -165,6 +166,7 @@ TEST(Sampled, EveryFrameAndAllTogetherLieInTheirIntervals) {
     std::vector<int> frames_covered(frames.size());
     const auto [covered, bias] = over_seeds(made, machine, truth, [&](const Result& sampled) {
       ASSERT_EQ(sampled.frame_cycles.size(), frames.size());
+      EXPECT_LE(sampled.cycles_plus_minus, 0.1 * static_cast<double>(truth.cycles));
       for (std::size_t i = 0; i < frames.size(); ++i) {
         EXPECT_LE(sampled.frame_plus_minus[i], sampled.cycles_plus_minus);
         const double error =

@@ -278,6 +278,18 @@ TEST(Throughput, WhatIfAUnitDividesPixels) {
   EXPECT_GT(cycles(0), 100 * cycles(4)) << "the host reads byte by byte";
 }
 
+// As in the simulation.
+TEST(Throughput, ATextureThatNoProgramSamplesCostsNothing) {
+  RandomTrace made = testing::simple_trace(10);
+  made.trace.programs[2].text = "ps_1_1\nmov r0, v0\n";
+  const auto cycles = [&] {
+    return estimate_throughput(made.trace, made.work, machine::load(machine::kGeForce4)).cycles;
+  };
+  const Cycle bound = cycles();
+  std::get<Draw>(made.trace.commands[1]).texture.reset();
+  EXPECT_EQ(bound, cycles());
+}
+
 TEST(Throughput, NoWorkTakesNoTime) {
   const Result result = estimate_throughput({}, {}, Machine{});
   EXPECT_EQ(result.cycles, 0u);

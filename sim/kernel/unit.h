@@ -19,7 +19,7 @@ struct Statistic {
 };
 
 // What a unit did in a cycle, or why it did nothing, and until when that stays so unless a channel wakes it
-// earlier. Units return one of the four below from advance().
+// earlier. advance() returns one of busy(), starved(), idle() and blocked().
 struct Step {
   Cycle next;  // to be called again no later than here (at or before now: next cycle; kNever: when woken)
   std::uint32_t book;  // kBusy, kStarved, kIdle, or kBlocked + number of the unit that is in the way

@@ -155,13 +155,15 @@ TEST(Timeline, EndsWellWhereItIsCutShort) {
 
 // Also of what goes on there, and is known later.
 TEST(Timeline, ShowsAllThatWasBeforeItWasCutShort) {
-  const Observed cut = observe(7, {.most_bytes = 30000});
-  ASSERT_LT(cut.cut_at, cut.result.cycles);
-  ASSERT_GT(cut.cut_at, 0u);
-  auto shown = cycles_of(cut.timeline), wanted = cycles_of(observe(7, {.last = cut.cut_at - 1}).timeline);
-  shown.erase("commands");  // whole
-  wanted.erase("commands");
-  EXPECT_EQ(shown, wanted);
+  for (std::uint64_t bytes = 20000; bytes <= 40000; bytes += 2500) {
+    const Observed cut = observe(7, {.most_bytes = bytes});
+    ASSERT_LT(cut.cut_at, cut.result.cycles);
+    ASSERT_GT(cut.cut_at, 0u);
+    auto shown = cycles_of(cut.timeline), wanted = cycles_of(observe(7, {.last = cut.cut_at - 1}).timeline);
+    shown.erase("commands");  // whole
+    wanted.erase("commands");
+    EXPECT_EQ(shown, wanted) << bytes << " bytes";
+  }
 }
 
 std::string timeline_of(const RandomTrace& made, const LogWindow& window) {

@@ -136,14 +136,11 @@ void Timeline::flush() {
   used_ = 0;
 }
 
-void Timeline::write(std::string_view head, std::uint64_t first, std::string_view middle,
-                     std::uint64_t second, std::string_view tail, Cycle at) {
-  if (at >= cut_at_) return;
-  if (bytes_ + most_bytes_of(head, middle, tail) > (cut_at_ == kNever ? room_ : room_behind_cut_)) {
-    cut_at_ = at;
-    return;
-  }
-  append(head, first, middle, second, tail);
+void Timeline::write(std::string_view head, Cycle first, std::string_view middle, std::uint64_t second,
+                     std::string_view tail, Cycle now) {
+  const std::uint64_t bytes = bytes_ + most_bytes_of(head, middle, tail);
+  if (cut_at_ == kNever && bytes > room_) cut_at_ = now;
+  if (first < cut_at_ && bytes <= room_behind_cut_) append(head, first, middle, second, tail);
 }
 
 // To the window; false where nothing is left.
@@ -157,7 +154,7 @@ void Timeline::booked(const Unit& unit, std::uint32_t book, Cycle from, Cycle un
   if (book == Step::kIdle || !clip(from, until)) return;
   if (from >= cut_at_) return;
   until = std::min(until, cut_at_);  // of one that was open there
-  write(slice_heads_[unit.number()], from, kSliceMiddle, until - from, slice_tails_[book], from);
+  write(slice_heads_[unit.number()], from, kSliceMiddle, until - from, slice_tails_[book], until);
 }
 
 void Timeline::count(Counter& counter, std::uint64_t value, Cycle at) {
@@ -190,7 +187,7 @@ Cycle Timeline::sample(Cycle now) {
 
 void Timeline::end(const Result& result) {
   if (next_sample_ != kNever) count_buses(result.cycles);
-  room_ = window_.most_bytes;
+  room_ = room_behind_cut_ = window_.most_bytes;
   const Cycle others_cut_at = std::exchange(cut_at_, kNever);
   Cycle start = 0;
   for (std::size_t i = 0; i < trace_.commands.size(); ++i) {

@@ -27,7 +27,8 @@ class Timeline final : public Observer {
   // Writes the commands' track and the end of the text.
   void end(const Result& result) override;
 
-  // What did not fit into `most_bytes` began here; kNever: everything did.
+  // All before is shown, and nothing that begins here or later: it did not fit into `most_bytes`. kNever:
+  // everything did.
   Cycle cut_at() const { return cut_at_; }
 
  private:
@@ -39,9 +40,10 @@ class Timeline final : public Observer {
   // An event: three pieces of text about two numbers.
   void append(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
               std::string_view tail);
-  // The same, as long as there is room; it begins at `at`.
-  void write(std::string_view head, std::uint64_t first, std::string_view middle, std::uint64_t second,
-             std::string_view tail, Cycle at);
+  // The same of one that begins at `first`, as long as there is room. The first for which there is none is
+  // known at `now`: all that comes later is cut.
+  void write(std::string_view head, Cycle first, std::string_view middle, std::uint64_t second,
+             std::string_view tail, Cycle now);
   bool clip(Cycle& from, Cycle& until) const;
   void count(Counter& counter, std::uint64_t value, Cycle at);
   void count_buses(Cycle now);

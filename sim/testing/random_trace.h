@@ -87,7 +87,7 @@ class RandomMaker {
     made.memory.schedule_queue = depth();
     made.memory.bypass_limit = int(number(0, 16));
     made.memory.return_latency = int(number(1, 80));
-    made.fetch = {power(16, 2), power(4, 2), depth(), int(number(1, 4)), int(number(1, 3))};
+    made.fetch = {power(16, 2), power(4, 2), power(1, 2), depth(), int(number(1, 4)), int(number(1, 3))};
     made.primitive = {int(number(1, 3)), int(number(0, 5)), depth()};
     made.setup = {int(number(1, 4)), int(number(1, 12)), depth()};
     made.raster = {int(number(1, 2)), int(number(1, 8)), depth()};

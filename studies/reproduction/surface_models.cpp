@@ -99,7 +99,7 @@ std::vector<Part> helicopter() {
   return parts;
 }
 
-// Meters over a square of side 2, from several octaves of ridges.
+// Object units over the square from -1 to 1, from several octaves of ridges.
 double height_at(double x, double z) {
   double height = 0.9 * std::exp(-4 * (x * x + z * z)), size = 0.35, frequency = 1.7;
   for (int octave = 0; octave < 8; ++octave, size *= 0.47, frequency *= 2.1)

@@ -18,10 +18,14 @@ std::vector<std::vector<std::string>> writers(const std::string& to) {
           {"record", "tiny.toml", "-o", to + "/t.trace"},
           {"sample", "mesh.obj", "-n", "2000", "-o", to + "/s.ply"},
           {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2", "--out", to},
-          {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2", "--out", "elsewhere", "--cache", to},
           {"shader", "assemble", "plain.vs", "-o", to + "/plain.bin"},
           {"shader", "disassemble", "plain.vs", "-o", to + "/plain.txt"},
           {"reproduce", "fig8", "--out", to}};
+}
+
+// Writes to it only what can be computed again: it need not be writable, if it is there.
+std::vector<std::string> sweep_cached_in(const std::string& folder) {
+  return {"sweep", "tiny.toml", "--sweep", "vertex.units=1,2", "--out", "elsewhere", "--cache", folder};
 }
 
 class Outputs : public BadInputs {
@@ -88,6 +92,7 @@ TEST(BadInputs, OutputWhereTheFileSystemRefusesTheName) {
   std::filesystem::create_symlink("nowhere/gone", inputs.path() / "lost");
   for (const char* link : {"self", "lost"}) {
     for (const auto& arguments : writers(link)) inputs.refused(link, arguments);
+    inputs.refused(link, sweep_cached_in(link));
     inputs.refused(link, {"record", "tiny.toml", "-o", link});
   }
   inputs.refused("a link to itself", {"run", "tiny.toml", "--out", "there"});
@@ -103,6 +108,8 @@ TEST(BadInputs, OutputWhereNothingCanBeWritten) {
   for (const char* place : {"/proc/self", "/proc/none", "/sys/kernel", "taken"}) {
     for (const auto& arguments : writers(place)) inputs.refused(place, arguments);
   }
+  for (const char* place : {"/proc/none", "taken"}) inputs.refused(place, sweep_cached_in(place));
+  inputs.used("/proc/self", sweep_cached_in("/proc/self"));
 }
 
 // A small file system in the place of a folder, which this process alone sees. `mounted` is false where that
@@ -130,6 +137,7 @@ TEST(BadInputs, OutputOnAFullDisk) {
   if (!disk.mounted) GTEST_SKIP() << "no file system may be mounted here";
   std::ofstream(disk.place / "full") << std::string(4096, 'x');
   for (const auto& arguments : writers("there")) inputs.fails("a full disk", arguments, {});
+  inputs.used("a full disk", sweep_cached_in("there"));
   EXPECT_EQ(inputs.count(), 12);
 }
 
@@ -138,6 +146,7 @@ TEST(BadInputs, OutputOnAReadOnlyDisk) {
   const SmallDisk disk(inputs.path() / "there", "size=64k", MS_RDONLY);
   if (!disk.mounted) GTEST_SKIP() << "no file system may be mounted here";
   for (const auto& arguments : writers("there")) inputs.refused("read-only", arguments);
+  inputs.used("read-only", sweep_cached_in("there"));
 }
 
 }  // namespace

@@ -1,21 +1,16 @@
+#include <set>
+
 #include "cases.h"
 #include "traces/scene_keys.h"
 
 namespace splatscope::tests {
 namespace {
 
-template <class... Parts>
-struct Overloaded : Parts... {
-  using Parts::operator()...;
-};
-template <class... Parts>
-Overloaded(Parts...) -> Overloaded<Parts...>;
-
 // What no key of the kind takes, as it stands in a file.
 std::vector<std::string> bad_values(const traces::SceneKey& key) {
   using Values = std::vector<std::string>;
   return std::visit(
-      Overloaded{
+      traces::Overloaded{
           [](const traces::RealValue&) {
             return Values{"nan", "inf", "-inf", "1e300", "-1e300", "\"1\"", "true", "[1]", "1979-05-27"};
           },
@@ -64,23 +59,35 @@ TEST(BadInputs, ScenesWithAWrongValue) {
   EXPECT_GE(inputs.count(), 200);
 }
 
-// All keys at their defaults, small: the first bytes are beyond any cut.
+// All keys of some tables at their defaults, but those that `start` gives in the first of these tables.
+std::string scene_of_defaults(const std::string& start, const std::set<std::string_view>& tables) {
+  std::string text = start, table(start.substr(1, start.find(']') - 1));
+  for (const traces::SceneKey& key : traces::scene_keys()) {
+    if (!tables.contains(key.table)) continue;
+    if (table != key.table) text += fmt::format("[{}]\n", key.table);
+    table = key.table;
+    if (start.find(fmt::format("\n{} = ", key.name)) == std::string::npos)
+      text += fmt::format("{} = {}\n", key.name, traces::default_text(key));
+  }
+  return text;
+}
+
+// Small ones: the first bytes are beyond any cut.
 TEST(BadInputs, ScenesCutShort) {
   BadInputs inputs;
-  std::string table = "surfels", rest;
-  for (const traces::SceneKey& key : traces::scene_keys()) {
-    if (table != key.table) rest += fmt::format("[{}]\n", key.table);
-    table = key.table;
-    const bool small = key.table == "surfels" && (key.name == "columns" || key.name == "rows");
-    if (!small) rest += fmt::format("{} = {}\n", key.name, traces::default_text(key));
-  }
-  const std::string start = "[surfels]\ncolumns = 4\nrows = 4\n";
-  BadInputs whole;
-  whole.file("whole.toml", start + rest);
-  whole.refused_or_used("whole", {"record", "whole.toml", "-o", "whole.trace"});
-  for (std::size_t size = 0; size < rest.size(); size += 64) {
-    inputs.file("bad.toml", start + rest.substr(0, size));
-    inputs.refused_or_used(fmt::format("{} bytes", start.size() + size), kRecord);
+  std::set<std::string_view> of_surfels;
+  for (const traces::SceneKey& key : traces::scene_keys())
+    if (key.table != "volume") of_surfels.insert(key.table);
+  for (const auto& [start, tables] : std::vector<std::pair<std::string, std::set<std::string_view>>>{
+           {"[surfels]\ncolumns = 4\nrows = 4\n", of_surfels},
+           {"[frame]\nwidth = 16\nheight = 16\n", {"frame", "volume"}}}) {
+    const std::string whole = scene_of_defaults(start, tables);
+    inputs.file("bad.toml", whole);
+    inputs.used(start, kRecord);
+    for (std::size_t size = start.size(); size < whole.size(); size += 64) {
+      inputs.file("bad.toml", whole.substr(0, size));
+      inputs.refused_or_used(fmt::format("{} bytes", size), kRecord);
+    }
   }
   EXPECT_GE(inputs.count(), 10);
 }

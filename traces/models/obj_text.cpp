@@ -11,8 +11,8 @@
 
 #include "model/byte_order_mark.h"
 #include "model/error.h"
+#include "model/input_file.h"
 #include "model/stop.h"
-#include "traces/models/file_bytes.h"
 
 namespace splatscope::traces {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "model/input_file.h"
 #include "model/stop.h"
-#include "traces/models/file_bytes.h"
 #include "traces/ply_header.h"
 #include "traces/ply_values.h"
 

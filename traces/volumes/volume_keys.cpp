@@ -6,6 +6,7 @@ namespace {
 using S = SceneSettings;
 
 constexpr double kMostValue = 1e30, kFarthest = 1e9;
+constexpr kernels::VolumeSettings kDefaults;
 
 kernels::PhongLight& light(S& s) {
   return s.volume.rendering.light;
@@ -61,15 +62,15 @@ std::span<const SceneKey> volume_keys() {
                    0}},
       {"volume", "cutoff", "",
        "radial index at which a splat ends: 4 in the paper, where layers ripple by 8%",
-       RealValue{[](S& s) -> double& { return s.volume.rendering.cutoff; }, 11, 0.5, 50}},
+       RealValue{[](S& s) -> double& { return s.volume.rendering.cutoff; }, kDefaults.cutoff, 0.5, 50}},
       {"volume", "ambient", "", "part of a voxel's colour that has no direction",
-       RealValue{[](S& s) -> double& { return light(s).ambient; }, 0.3, 0, 1}},
+       RealValue{[](S& s) -> double& { return light(s).ambient; }, kDefaults.light.ambient, 0, 1}},
       {"volume", "diffuse", "", "part by the angle between gradient and light",
-       RealValue{[](S& s) -> double& { return light(s).diffuse; }, 0.7, 0, 1}},
+       RealValue{[](S& s) -> double& { return light(s).diffuse; }, kDefaults.light.diffuse, 0, 1}},
       {"volume", "specular", "", "white highlight",
-       RealValue{[](S& s) -> double& { return light(s).specular; }, 0.2, 0, 1}},
+       RealValue{[](S& s) -> double& { return light(s).specular; }, kDefaults.light.specular, 0, 1}},
       {"volume", "shininess", "", "exponent of the highlight",
-       RealValue{[](S& s) -> double& { return light(s).shininess; }, 20, 1, 1000}},
+       RealValue{[](S& s) -> double& { return light(s).shininess; }, kDefaults.light.shininess, 1, 1000}},
       {"volume", "light", "camera space", "direction toward the light: x right, y up, z into the picture",
        VectorValue{[](S& s) -> glm::dvec3& { return light(s).toward_light; }, {0, 0, -1}, -1, 1}},
       {"volume", "background", "r g b", "behind the volume",

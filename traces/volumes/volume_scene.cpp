@@ -201,7 +201,7 @@ kernels::Box box_of(const VolumeScene& scene) {
   if (scene.samples.empty() && !scene.places)
     return {volume.center() - 0.5 * volume.extent(), volume.center() + 0.5 * volume.extent()};
   for (const kernels::VolumeSample& sample : scene.samples)
-    box.add(sample.position, glm::dvec3(std::cbrt(sample.cell)));
+    box.add(sample.position, glm::dvec3(0.5 * std::cbrt(sample.cell)));
   if (!scene.places) return box;
   glm::ivec3 voxel;
   for (voxel.z = 0; voxel.z < volume.size.z; ++voxel.z) {

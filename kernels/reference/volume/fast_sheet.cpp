@@ -17,6 +17,7 @@ namespace splatscope::kernels::HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t kLanes = FastSurfels::kPadding;  // at most
+constexpr std::size_t kSplatValues = offsetof(SheetSplat, box) / sizeof(float);
 
 // W^T a: takes a row of the Jacobian to object space.
 HWY_INLINE V3 turned_back(const FastVolumeView& view, const V3& a) {
@@ -99,7 +100,7 @@ HWY_INLINE Symmetric2 prefiltered(VolumePrefilter filter, const Symmetric2& v) {
 
 // What becomes of the splats of one register.
 struct Batch {
-  HWY_ALIGN float values[9][kLanes];  // in the order of SheetSplat's floats
+  HWY_ALIGN float values[kSplatValues][kLanes];  // in the order of SheetSplat's floats
   HWY_ALIGN std::int32_t left[kLanes], top[kLanes], right[kLanes], bottom[kLanes];
   HWY_ALIGN float keep[kLanes];
 };
@@ -185,17 +186,17 @@ HWY_INLINE void project_batch(const FastVolumeView& view, const SpecularTable& t
     return hn::Mul(opacity, hn::Min(hn::Add(hn::Mul(lanes[c], light.matt), light.shine), one));
   };
   const V inverse = hn::Div(one, v.determinant);
-  const V values[9] = {x,
-                       y,
-                       hn::Mul(v.yy, inverse),
-                       hn::Mul(set(-2.0f), hn::Mul(v.xy, inverse)),
-                       hn::Mul(v.xx, inverse),
-                       color(Lanes::red),
-                       color(Lanes::green),
-                       color(Lanes::blue),
-                       opacity};
+  const V values[kSplatValues] = {x,
+                                  y,
+                                  hn::Mul(v.yy, inverse),
+                                  hn::Mul(set(-2.0f), hn::Mul(v.xy, inverse)),
+                                  hn::Mul(v.xx, inverse),
+                                  color(Lanes::red),
+                                  color(Lanes::green),
+                                  color(Lanes::blue),
+                                  opacity};
   V sum = hn::Mul(v.determinant, zero);  // finite where all of them are
-  for (std::size_t i = 0; i < 9; ++i) {
+  for (std::size_t i = 0; i < kSplatValues; ++i) {
     hn::Store(values[i], F{}, batch.values[i]);
     sum = hn::Add(sum, hn::Mul(values[i], zero));
   }

@@ -17,8 +17,8 @@ struct FastVolumePicture {
   int width = 0;
   int height = 0;
   std::vector<glm::vec4> pixels;  // r g b times opacity, and opacity; rows from the top
-  std::size_t left_out = 0;       // splats before the near plane, outside of the picture, or without a
-                                  // finite footprint
+  std::size_t left_out = 0;       // splats not between the near and the far plane, outside of the
+                                  // picture, or without a finite footprint
   std::size_t sheets = 0;         // that have a splat in the picture
 };
 

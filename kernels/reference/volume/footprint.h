@@ -54,8 +54,8 @@ struct Footprint {
 // W V W^T (Eq. 31): once a frame on grids, once a kernel elsewhere.
 glm::dmat3 camera_variance(const View& view, const glm::dmat3& object_variance);
 
-// Eq. 31 to 33 from the variance in camera space. Nothing where the point is not beyond the near plane or the
-// footprint not finite.
+// Eq. 31 to 33 from the variance in camera space. Nothing where the point is not between the near and the
+// far plane or the footprint not finite.
 std::optional<Footprint> footprint(const View& view, Projection projection, VolumePrefilter prefilter,
                                    const glm::dvec3& camera, const glm::dmat3& camera_variance);
 

@@ -6,16 +6,14 @@ namespace splatscope::sim {
 namespace {
 
 constexpr std::uint32_t kIndexBytes = 2;
-constexpr int kCacheWays = 4;  // of a vertex cache with as many lines; not published: ours
 
 }  // namespace
 
 VertexFetch::VertexFetch(std::string name, Completion& completion, const Machine::Fetch& spec)
     : DrawUnit(std::move(name), completion),
       spec_(spec),
-      cache_({spec.cache_lines, std::min(spec.cache_lines, kCacheWays),
-              static_cast<std::uint32_t>(spec.line_bytes), static_cast<std::uint32_t>(spec.line_bytes),
-              spec.pending_vertices}) {}
+      cache_({spec.cache_lines, spec.cache_ways, static_cast<std::uint32_t>(spec.line_bytes),
+              static_cast<std::uint32_t>(spec.line_bytes), spec.pending_vertices}) {}
 
 void VertexFetch::connect(const Ports& video, const Ports& agp, std::vector<Channel<VertexNumber>*> units,
                           Channel<std::uint8_t>& order) {
