@@ -212,16 +212,24 @@ std::array<std::uint16_t, 3> indices_at(const Buffer& indices, std::size_t first
   return three;
 }
 
-Indices::Indices(int cache_entries)
-    : cache_entries_(static_cast<std::uint32_t>(cache_entries)), known_(kIndices) {}
+Indices::Indices(int cache_entries) : cache_entries_(static_cast<std::uint32_t>(cache_entries)) {}
 
 void Indices::begin(const DrawBindings& bindings) {
   bindings_ = &bindings;
   position_ = 0;
+  is_one_run_ = true;
+  run_first_ = run_end_ = 0;
   shaded_ += cache_entries_ + 1;  // nothing is left in the FIFO
   if (shaded_ < kManyNumbers && batch_ < kManyNumbers) return;
   std::ranges::fill(known_, Known{});
   batch_ = shaded_ = 0;
+}
+
+void Indices::write_down() {
+  is_one_run_ = false;
+  known_.resize(kIndices);
+  for (std::uint32_t i = 0; i < run_end_ - run_first_; ++i)
+    known_[run_first_ + i] = {run_start_.inserted + i, run_start_.batch + i};
 }
 
 void Indices::fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch) {
@@ -245,29 +253,27 @@ void Indices::fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryB
 
 // How many quads come next as splats are drawn: triangles 0 1 2 and 0 2 3 of four vertices that follow one
 // another, and those of the quad before; all of them new, and none more than `batch` takes.
-std::uint32_t Indices::quads_ahead(const GeometryBatch& batch) const {
+std::uint32_t Indices::quads_ahead(std::uint32_t first_index, const GeometryBatch& batch) const {
   static_assert(std::endian::native == std::endian::little);
   if (cache_entries_ < kCorners)
     return 0;  // a shorter FIFO has lost a quad's first vertex by its second triangle
   const Draw& draw = bindings_->draw;
   const std::byte* at =
       bindings_->indices.bytes.data() + (std::size_t{draw.first_index} + position_) * sizeof(std::uint16_t);
-  std::uint16_t start;
-  std::memcpy(&start, at, sizeof start);
   const std::size_t left = draw.index_count - position_;
-  const std::size_t most =
-      std::min({left / kQuadIndices, (GeometryBatch::kTriangles - batch.triangles.size()) / 2,
-                (kIndices - start) / kQuad, (GeometryBatch::kVertices - batch.vertices.size()) / kQuad});
+  const std::size_t most = std::min(
+      {left / kQuadIndices, (GeometryBatch::kTriangles - batch.triangles.size()) / 2,
+       (kIndices - first_index) / kQuad, (GeometryBatch::kVertices - batch.vertices.size()) / kQuad});
   const auto is_old = [this](const Known& known) { return known.batch >= batch_ || is_in_fifo(known); };
-  for (std::uint32_t quad = 0; quad < most; ++quad, at += kQuadIndices * sizeof start) {
+  for (std::uint32_t quad = 0; quad < most; ++quad, at += kQuadIndices * sizeof(std::uint16_t)) {
     std::uint64_t four;  // indices
     std::uint32_t two;
     std::memcpy(&four, at, sizeof four);
     std::memcpy(&two, at + sizeof four, sizeof two);
-    const std::uint32_t first = start + quad * kQuad;
+    const std::uint32_t first = first_index + quad * kQuad;
     if (four != 0x0000'0002'0001'0000u + first * 0x0001'0001'0001'0001u ||
         two != 0x0003'0002u + first * 0x0001'0001u ||
-        std::ranges::any_of(std::span(&known_[first], kQuad), is_old))
+        (!is_one_run_ && std::ranges::any_of(std::span(&known_[first], kQuad), is_old)))
       return quad;
   }
   return static_cast<std::uint32_t>(most);
@@ -277,16 +283,22 @@ std::uint32_t Indices::quads_ahead(const GeometryBatch& batch) const {
 void Indices::fill_quads(std::uint32_t first_index, std::uint32_t quads, GeometryBatch& batch) {
   const std::uint32_t count = quads * kQuad, first_vertex = bindings_->draw.base_vertex + first_index;
   const auto place = static_cast<std::uint32_t>(batch.vertices.size());
-  const Known before{shaded_ + 1, batch_ + place};
+  const Known start{shaded_ + 1, batch_ + place};
   const auto append = [](auto& values, std::uint32_t more) {
     values.resize(values.size() + more);
     return std::span(values).last(more);
   };
   const auto vertices = append(batch.vertices, count), shaded = append(batch.shaded_vertices, count);
-  const auto known = std::span(known_).subspan(first_index, count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    known[i] = {before.inserted + i, before.batch + i};
-    vertices[i] = shaded[i] = first_vertex + i;
+  std::iota(vertices.begin(), vertices.end(), first_vertex);
+  std::iota(shaded.begin(), shaded.end(), first_vertex);
+  if (is_one_run_) {
+    if (run_end_ == 0) {
+      run_first_ = first_index;
+      run_start_ = start;
+    }
+    run_end_ = first_index + count;
+  } else {
+    for (std::uint32_t i = 0; i < count; ++i) known_[first_index + i] = {start.inserted + i, start.batch + i};
   }
   shaded_ += count;
   for (std::uint32_t quad = 0; quad < quads; ++quad) {
@@ -302,10 +314,15 @@ bool Indices::fill(GeometryBatch& batch) {
   const Draw& draw = bindings_->draw;
   while (position_ + kCorners <= draw.index_count) {
     const auto index = indices_at(bindings_->indices, draw.first_index + position_);
-    if (const std::uint32_t quads = quads_ahead(batch); quads != 0) {
+    if (is_one_run_ && run_end_ != 0 && index[0] != run_end_) write_down();
+    if (const std::uint32_t quads = quads_ahead(index[0], batch); quads != 0) {
       fill_quads(index[0], quads, batch);
       position_ += quads * kQuadIndices;
       continue;
+    }
+    if (is_one_run_) {
+      if (batch.vertices.size() == GeometryBatch::kVertices) break;
+      write_down();
     }
     std::size_t size = batch.vertices.size();  // with this triangle, at most
     for (const std::uint16_t corner : index) size += known_[corner].batch < batch_;

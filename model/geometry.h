@@ -100,14 +100,20 @@ class Indices {
     return known.inserted != 0 && shaded_ - (known.inserted - 1) <= cache_entries_;
   }
   void fill_triangle(const std::array<std::uint16_t, 3>& index, GeometryBatch& batch);
-  std::uint32_t quads_ahead(const GeometryBatch& batch) const;
+  std::uint32_t quads_ahead(std::uint32_t first_index, const GeometryBatch& batch) const;
   void fill_quads(std::uint32_t first_index, std::uint32_t quads, GeometryBatch& batch);
+  void write_down();
 
   const DrawBindings* bindings_ = nullptr;
   std::uint32_t cache_entries_;
-  std::vector<Known> known_;
-  std::uint32_t position_ = 0;  // in the draw
-  std::uint32_t batch_ = 0;     // times kVertices; of all draws, as is
+  // Splats are quads of indices that all follow one another, each a step further in batch and FIFO: of such a
+  // draw the first says all. It is written down, an entry each, once something else comes.
+  bool is_one_run_ = true;
+  std::uint32_t run_first_ = 0, run_end_ = 0;  // indices
+  Known run_start_;                            // of the first one
+  std::vector<Known> known_;                   // of all indices, where the draw is more than a run
+  std::uint32_t position_ = 0;                 // in the draw
+  std::uint32_t batch_ = 0;                    // times kVertices; of all draws, as is
   std::uint32_t shaded_ = 0;
 };
 

@@ -127,6 +127,7 @@ void expect_fifo(std::span<const std::uint16_t> indices, std::mt19937& random) {
     const Rendered rendered = render(trace, options);
     EXPECT_EQ(rendered.work[0].shaded_vertices, shaded) << entries;
     EXPECT_EQ(rendered.counters.vertices, shaded.size());
+    EXPECT_EQ(rendered.counters.fragments, usual.counters.fragments);
     EXPECT_EQ(rendered.frame, usual.frame);
   }
 }
@@ -142,15 +143,25 @@ TEST(Render, ShadesWhatMissesTheVertexCache) {
   expect_fifo(indices, random);
 }
 
-// Nothing but quads, which mostly follow one another: the model takes many of them at once.
+// Nothing but quads, which mostly follow one another, the first of them for one batch of the model or
+// several: it takes many of them at once.
 TEST(Render, ShadesWhatMissesTheVertexCacheInRunsOfQuads) {
   std::mt19937 random(random_seed());
-  std::vector<std::uint16_t> indices;
-  for (std::uint32_t first = 0, quad = 0; quad < 3000; ++quad) {
-    for (const std::uint16_t corner : kQuad) indices.push_back(static_cast<std::uint16_t>(first + corner));
-    first = random() % 100 == 0 ? static_cast<std::uint32_t>(random() % 2990) : (first + 4) % 2996;
+  for (const std::uint32_t first_run : {1u, 100u, 255u, 256u, 257u, 600u}) {
+    std::vector<std::uint16_t> indices;
+    for (std::uint32_t first = 40, quad = 1; quad < 3000; ++quad) {
+      for (const std::uint16_t corner : kQuad) indices.push_back(static_cast<std::uint16_t>(first + corner));
+      const std::uint32_t next = (first + 4) % 2996;
+      if (quad < first_run) {
+        first = next;
+      } else if (quad == first_run) {
+        first = next - static_cast<std::uint32_t>(random() % 30);  // some of its last ones again
+      } else {
+        first = random() % 100 == 0 ? static_cast<std::uint32_t>(random() % 2990) : next;
+      }
+    }
+    expect_fifo(indices, random);
   }
-  expect_fifo(indices, random);
 }
 
 // So many triangles on three vertices, each cut into two by the near plane, that in one batch the corners of
