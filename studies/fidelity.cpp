@@ -20,35 +20,50 @@ namespace {
 constexpr std::string_view kTable1[] = {"checkerboard-no-ewa", "checkerboard-ewa-per-pixel",
                                         "checkerboard-ewa-per-surfel"};
 
-FidelityRow row_of(const FidelityFrame& frame, std::string_view machine, Fidelity fidelity,
-                   const FrameCost& cost) {
+double plus_minus_of(const sim::Result& timing, std::size_t frame) {
+  return timing.frame_plus_minus.empty() ? 0 : timing.frame_plus_minus[frame];
+}
+
+// One of each of the `frames` of a trace. Their seconds, and the books of units, are known of all together.
+std::vector<FidelityRow> rows_by_frame(const FidelityFrame& frame, std::string_view machine,
+                                       Fidelity fidelity, const FrameCost& cost, std::size_t frames) {
   FidelityRow row;
-  row.scene = frame.scene;
   row.resolution = frame.resolution;
   row.machine = machine;
   row.fidelity = fidelity;
-  row.host_seconds = cost.seconds;
+  row.host_seconds = cost.seconds / static_cast<double>(frames);
   row.peak_megabytes = cost.megabytes;
-  if (!cost.timing) return row;
-  row.cycles = cost.timing->cycles;
-  row.cycles_plus_minus = cost.timing->cycles_plus_minus;
-  for (const sim::UnitBooks& books : cost.timing->units)
-    row.units.push_back({books.name, static_cast<double>(books.busy) / static_cast<double>(row.cycles)});
-  return row;
+  if (cost.timing) {
+    for (const sim::UnitBooks& books : cost.timing->units)
+      row.units.push_back(
+          {books.name, static_cast<double>(books.busy) / static_cast<double>(cost.timing->cycles)});
+  }
+  std::vector<FidelityRow> rows(frames, row);
+  for (std::size_t i = 0; i < frames; ++i) {
+    rows[i].scene = frames == 1 ? frame.scene : fmt::format("{}, frame {}", frame.scene, i + 1);
+    if (!cost.timing) continue;
+    rows[i].cycles = cost.timing->frame_cycles[i];
+    rows[i].cycles_plus_minus = plus_minus_of(*cost.timing, i);
+  }
+  return rows;
 }
 
 std::vector<DrawWork> work_of(const Trace& trace, const Machine& machine) {
   return render(trace, render_options(machine)).work;
 }
 
-// What other samples say; a frame that is simulated whole is the same by every seed.
-void add_seeds(const Trace& trace, const Machine& machine, FidelityRow& row) {
+// What other samples say of each frame of a trace; one that is simulated whole is the same by every seed.
+void add_seeds(const Trace& trace, const Machine& machine, std::vector<FidelityRow>& rows) {
   const std::vector<DrawWork> work = work_of(trace, machine);
-  const std::uint64_t runs = row.cycles_plus_minus == 0 ? 1 : kSampleSeeds;
+  const auto is_whole = [](const FidelityRow& row) { return row.cycles_plus_minus == 0; };
+  const std::uint64_t runs = std::ranges::all_of(rows, is_whole) ? 1 : kSampleSeeds;
   for (std::uint64_t seed = 0; seed < runs; ++seed) {
     const sim::Result result =
         time_frame(trace, work, machine, Fidelity::sampled, {.seed = seed, .heat_maps = nullptr});
-    row.seeds.push_back({static_cast<double>(result.cycles), result.cycles_plus_minus});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (seed == 0 || !is_whole(rows[i]))
+        rows[i].seeds.push_back({static_cast<double>(result.frame_cycles[i]), plus_minus_of(result, i)});
+    }
   }
 }
 
@@ -203,15 +218,17 @@ std::vector<FidelityRow> fidelity_rows(const FidelityFrame& frame, int repetitio
   for (const std::string_view machine_name : kBothMachines) {
     const Machine machine = machine::load(machine_name);
     const Trace trace = frame.record(machine);
-    const std::size_t first = rows.size();
+    const std::size_t first = rows.size(), frames = frame_ends(trace).size();
     for (const Fidelity fidelity : kFidelityLadder) {
       const int runs = fidelity == Fidelity::referee ? 1 : repetitions;
-      rows.push_back(row_of(frame, machine_name, fidelity, cost_of(trace, machine, fidelity, runs)));
-      if (fidelity == Fidelity::sampled) add_seeds(trace, machine, rows.back());
-      tell(progress, rows.size(), std::size(kBothMachines) * std::size(kFidelityLadder));
+      auto more =
+          rows_by_frame(frame, machine_name, fidelity, cost_of(trace, machine, fidelity, runs), frames);
+      if (fidelity == Fidelity::sampled) add_seeds(trace, machine, more);
+      rows.insert(rows.end(), more.begin(), more.end());
+      tell(progress, rows.size(), std::size(kBothMachines) * std::size(kFidelityLadder) * frames);
     }
-    const FidelityRow referee = rows.back();
-    for (std::size_t i = first; i < rows.size(); ++i) compare_with(referee, rows[i]);
+    const std::vector<FidelityRow> referee(rows.end() - static_cast<std::ptrdiff_t>(frames), rows.end());
+    for (std::size_t i = first; i < rows.size(); ++i) compare_with(referee[(i - first) % frames], rows[i]);
   }
   return rows;
 }

@@ -9,19 +9,19 @@
 
 namespace splatscope::studies {
 
-// One fidelity on one scene and machine, against the referee on the same.
+// One fidelity on one frame and machine, against the referee on the same.
 struct FidelityRow {
   std::string scene;
   int resolution = 0;  // pixels: width and height
   std::string machine;
   Fidelity fidelity = Fidelity::functional;
-  double host_seconds = 0;       // function and timing
+  double host_seconds = 0;       // function and timing; of a frame of several, on average
   sim::Cycle cycles = 0;         // 0: functional
   double cycles_plus_minus = 0;  // of fidelity sampled
   double error = 0;              // of the cycles, relative
   struct UnitError {
     std::string unit;
-    double error = 0;  // of its utilisation (busy cycles of all cycles)
+    double error = 0;  // of its utilisation (busy cycles of all cycles) over all frames of the trace
   };
   std::vector<UnitError> units;
   double peak_megabytes = 0;  // resident memory of the process at most; 0: the system does not tell
@@ -41,7 +41,7 @@ inline constexpr Fidelity kFidelityLadder[] = {Fidelity::functional, Fidelity::t
 inline constexpr std::uint64_t kSampleSeeds = 10;
 inline constexpr int kFidelityRepetitions = 3;  // of the study
 
-// A frame as each machine draws it.
+// A frame as each machine draws it, or several.
 struct FidelityFrame {
   std::string scene;
   int resolution = 0;  // pixels: width and height
@@ -53,8 +53,8 @@ FidelityFrame frame_of(traces::Scene scene);
 // says that it should be drawn.
 std::vector<FidelityFrame> figure_frames();
 
-// All fidelities on one frame and both machines. The host's seconds are the least of `repetitions` runs, but
-// for the referee, which runs once.
+// All fidelities on one frame, or on each of several, and both machines. The host's seconds are the least of
+// `repetitions` runs, but for the referee, which runs once.
 std::vector<FidelityRow> fidelity_rows(const FidelityFrame& frame, int repetitions,
                                        const Progress& progress = {});
 

@@ -41,6 +41,34 @@ TEST(FidelityStudy, EveryFidelityStandsBesideTheReferee) {
   }
 }
 
+TEST(FidelityStudy, EachFrameOfATraceIsJudged) {
+  const traces::Scene scene = traces::parse_scene(
+      "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
+      "[capture]\nviews = 1\nframe_size = 64\n",
+      "plane");
+  const auto twice = [&](const Machine& machine) {
+    Trace trace = traces::record(scene, machine.numbers).trace;
+    const std::vector<Command> again = trace.commands;
+    trace.commands.push_back(Present{});
+    trace.commands.insert(trace.commands.end(), again.begin(), again.end());
+    return trace;
+  };
+  const std::vector<FidelityRow> rows = fidelity_rows({"plane", 64, twice}, 1);
+  ASSERT_EQ(rows.size(), 20u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].scene, i % 2 == 0 ? "plane, frame 1" : "plane, frame 2");
+    EXPECT_LT(std::abs(rows[i].error), 0.1);
+    EXPECT_EQ(rows[i].seeds.size(), rows[i].fidelity == Fidelity::sampled ? 1u : 0u);
+    if (rows[i].fidelity == Fidelity::cycle) {
+      EXPECT_EQ(rows[i].error, 0);
+    }
+  }
+  const std::vector<FidelityRow> alone = fidelity_rows(frame_of(scene), 1);
+  EXPECT_NEAR(static_cast<double>(rows.back().cycles), static_cast<double>(alone.back().cycles),
+              0.1 * static_cast<double>(alone.back().cycles));
+  EXPECT_TRUE(fidelity_text({"Two", rows}).starts_with("Two, 4 frames against the referee\n"));
+}
+
 TEST(FidelityStudy, ATableIsSummedUp) {
   const traces::Scene scene = traces::parse_scene(
       "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -230,26 +231,30 @@ TEST(SweptParameters, HaveTheirKeysOnceAndAlone) {
 }
 
 TEST_F(WorkCaches, TheKeyIsOfWhatTheWorkDependsOn) {
-  RenderOptions options;
-  options.formats = machine.numbers;
-  const std::string key = work_key(trace, options);
+  const std::string key = work_key(trace, render_options(machine));
   EXPECT_EQ(key.size(), 32u);
-  EXPECT_EQ(key, work_key(traces::read_trace(file), options));
-  options.vertex_cache_entries = 17;
-  EXPECT_NE(key, work_key(trace, options));
-  options = {};
-  options.formats = machine.numbers;
-  options.formats.subpixel_bits = 8;
-  EXPECT_NE(key, work_key(trace, options));
-  options.formats = machine.numbers;
-  options.formats.reciprocal_bits = 12;
-  EXPECT_NE(key, work_key(trace, options));
-  options.formats = machine.numbers;
+  EXPECT_EQ(key, work_key(traces::read_trace(file), render_options(machine)));
+  std::set<std::string> keys{key};
+  const auto expect_another = [&](const std::string& why, const Machine& changed) {
+    EXPECT_TRUE(keys.insert(work_key(trace, render_options(changed))).second) << why;
+  };
+  for (const char* setting :
+       {"vertex.cache_entries=17", "numbers.vertex_arithmetic=ieee", "numbers.color=unorm12",
+        "numbers.combiner=float32", "numbers.frame=half", "numbers.frame_rounding=dither",
+        "numbers.depth=float32", "numbers.subpixel_bits=8", "numbers.filter_bits=8",
+        "numbers.reciprocal_bits=12"}) {
+    Machine changed = machine;
+    machine::set(changed, setting);
+    expect_another(setting, changed);
+  }
+  Machine timed = machine;
+  machine::set(timed, "memory.channels=1");
+  EXPECT_EQ(key, work_key(trace, render_options(timed))) << "of its time alone";
   trace.buffers[0].bytes[5] ^= std::byte{1};
-  EXPECT_NE(key, work_key(trace, options));
+  expect_another("another trace", machine);
 }
 
-TEST_F(WorkCaches, WhatIsCutShortIsNotTaken) {
+TEST_F(WorkCaches, WhatIsCutShortOrMoreThanAnyMemoryIsNotTaken) {
   const WorkCache cache(folder / "cache");
   const Rendered rendered = render(trace, {});
   cache.write("k", {rendered.work, rendered.counters});
@@ -261,8 +266,8 @@ TEST_F(WorkCaches, WhatIsCutShortIsNotTaken) {
   EXPECT_EQ(stream.counters.fragments, rendered.counters.fragments);
   EXPECT_EQ(cache.read("another", trace, stream), WorkCache::Found::no);
   const auto size = std::filesystem::file_size(cache.path_of("k"));
-  for (const std::uintmax_t left :
-       {size - 1, size / 2, std::uintmax_t{24}, std::uintmax_t{3}, std::uintmax_t{0}}) {
+  for (const std::uintmax_t left : {std::uintmax_t{1} << 40, size - 1, size / 2, std::uintmax_t{24},
+                                    std::uintmax_t{3}, std::uintmax_t{0}}) {
     std::filesystem::resize_file(cache.path_of("k"), left);
     EXPECT_EQ(cache.read("k", trace, stream), WorkCache::Found::damaged) << left << " bytes";
   }

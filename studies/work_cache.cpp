@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <fstream>
 #include <span>
 #include <stdexcept>
 #include <tuple>
@@ -38,6 +39,15 @@ struct Header {
 
 std::uint64_t hash_of(const void* bytes, std::size_t size, std::uint64_t seed) {
   return XXH64(bytes, size, seed);
+}
+
+// As a file begins; of one that is too short, zeros.
+Header header_of(const std::filesystem::path& path) {
+  Header header{0, {}, 0, 0};
+  std::array<char, sizeof header> bytes;
+  std::ifstream file(path, std::ios::binary);
+  if (file.read(bytes.data(), bytes.size())) std::memcpy(&header, bytes.data(), sizeof header);
+  return header;
 }
 
 Key key_of(std::string_view digits) {
@@ -242,13 +252,13 @@ WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, Wor
   if (type == std::filesystem::file_type::not_found) return Found::no;
   if (type != std::filesystem::file_type::regular)
     throw UserError(path.string(), 0, "stands in the place of a file of the cache, expected that or nothing");
+  const Header header = header_of(path);
+  if (header.magic != kMagic || header.key != key_of(key) ||
+      header.size != std::filesystem::file_size(path) - sizeof header)
+    return Found::damaged;  // before memory is taken for all of it
   const std::string bytes = file_bytes(path);
-  Header header;
-  if (bytes.size() < sizeof header) return Found::damaged;
-  std::memcpy(&header, bytes.data(), sizeof header);
-  const std::string_view body = std::string_view(bytes).substr(sizeof header);
-  if (header.magic != kMagic || header.key != key_of(key) || header.size != body.size() ||
-      header.checksum != hash_of(body.data(), body.size(), 0))
+  const std::string_view body = std::string_view(bytes).substr(std::min(bytes.size(), sizeof header));
+  if (header.size != body.size() || header.checksum != hash_of(body.data(), body.size(), 0))
     return Found::damaged;
   try {
     stream = stream_of(body, trace);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <future>
 #include <stdexcept>
 #include <thread>
 
@@ -89,6 +91,29 @@ TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
   EXPECT_TRUE(run.rendered.work.empty());
   for (std::size_t pixel = 0; pixel < 128 * 128; ++pixel)
     ASSERT_EQ(run.rendered.frame.color(pixel), rendered.frame.color(pixel)) << "pixel " << pixel;
+}
+
+// Neither before nor behind: where the first picture is done, the timing has begun.
+TEST(RunFrame, TimeBeginsWhileTheFunctionIsComputed) {
+  struct Beginning final : sim::Observer {
+    void begin(const sim::SimulatedMachine&) override { began.set_value(); }
+    void booked(const sim::Unit&, std::uint32_t, sim::Cycle, sim::Cycle) override {}
+    sim::Cycle sample(sim::Cycle) override { return sim::kNever; }
+    void end(const sim::Result&) override { ended = true; }
+    std::promise<void> began;
+    std::atomic<bool> ended = false;
+  } beginning;
+  sim::Observer* const observers[] = {&beginning};
+  const Machine machine = machine::load(machine::kRadeon8500);
+  bool beside = false;
+  const auto wait = [&](const Frame&) {
+    const auto status = beginning.began.get_future().wait_for(std::chrono::seconds(20));
+    beside = status == std::future_status::ready && !beginning.ended;
+  };
+  Trace trace = plane_of_several_draws(machine);
+  run_frame(trace, machine, Fidelity::cycle, {}, wait, {.observers = observers});
+  EXPECT_TRUE(beside);
+  EXPECT_TRUE(beginning.ended);
 }
 
 // What is wrong with a trace is found by the thread of the function, and told by the one that waits.

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <memory>
 #include <string>
+
+#include "model/testing/simd_targets.h"
 
 namespace splatscope::pixel {
 namespace {
@@ -39,6 +42,18 @@ TEST(PixelProgram, RegistersKeepToTheirRange) {
   EXPECT_EQ(run("ps_1_1\nmov r0, c0\n"), (Vec4{1, -1, 1, 0.5f}));
   EXPECT_EQ(run("ps_1_1\nadd_x2 r0, v0, -c0\n"), (Vec4{-1, 1, 0, 0.5f}));
   EXPECT_EQ(run("ps_1_1\nadd_sat r0, v0, -c0\n"), (Vec4{0, 1, 0, 0.25f}));
+}
+
+// Of nine bits; also where a target's rounding says -0.
+TEST(PixelProgram, StepsHaveOneZero) {
+  const PixelProgram program(isa::load("ps_1_1\nmov r0, c0\n", "test"), CombinerFormat::signed9);
+  const auto batch = std::make_unique<FragmentBatch>();
+  const Vec4 c0{-0.001f, 0.001f, -0.0f, -0.003f};
+  testing::on_each_simd_target([&] {
+    program.run({&c0, 1}, *batch, kBatch);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(std::bit_cast<std::uint32_t>(batch->r0[c][0]), 0u) << c;
+    EXPECT_EQ(batch->r0[3][0], -1 / 255.0f);
+  });
 }
 
 TEST(PixelProgram, SourceAndDestinationModifiers) {

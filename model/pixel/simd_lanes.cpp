@@ -41,7 +41,9 @@ HWY_INLINE void each(const Operation& operation, Lanes* result, int count, Funct
     float* out = result[component];
     each_lane(count, [&](std::size_t i) HWY_ATTR {
       V value = in_range(hn::Mul(function(component, i), scale), low, high);
-      if (operation.format.steps) value = hn::Div(hn::Round(hn::Mul(value, whole)), whole);
+      // Such a register has one zero; and where a target rounds by adding, -0 comes out as +0 too.
+      if (operation.format.steps)
+        value = hn::Add(hn::Div(hn::Round(hn::Mul(value, whole)), whole), hn::Zero(F{}));
       hn::StoreU(value, F{}, out + i);
     });
   }
