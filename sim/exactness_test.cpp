@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "model/testing/random_seed.h"
 #include "sim/simulate.h"
 #include "sim/testing/random_trace.h"
 #include "sim/testing/shrink.h"
@@ -47,7 +46,7 @@ rc::Gen<Case> any_case() {
                            rc::gen::set(&Case::of_trace, rc::gen::mapcat(sizes, trace))));
 }
 
-// A case that fails as the given one does, as small as some tries make it.
+// A case that fails too, as small as some tries make it.
 Case shrunk(Case failing, const std::function<bool(const Case&)>& fails) {
   std::size_t tries = 20000;
   for (Case before; before != failing && tries > 0;) {
@@ -162,7 +161,7 @@ TEST(Exactness, AFailureShrinksToWhatItTakes) {
   const auto fails = [&](const Case& drawn) {
     return quads(drawn) >= 40 && drawn.machine().setup.queue == 7;
   };
-  std::mt19937 random(random_seed());
+  std::mt19937 random(1);  // not of the machine, and so not another in every run
   Case failing;
   do {
     failing = {Choices(100), Choices(6000)};

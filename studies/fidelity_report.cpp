@@ -113,10 +113,12 @@ void add_frames(Report& report, std::span<const FidelityRow> rows) {
                      fmt::format("{:.0f}", row.peak_megabytes)});
   }
   report.table(
-      fmt::format("Every frame. Seeds: the worst error of sampled by seeds 0 to {}, and how often its "
-                  "interval covers the referee's cycles. Utilisation: the worst unit's, in percentage points "
-                  "of the referee's.",
-                  kSampleSeeds - 1),
+      fmt::format(
+          "Every frame. Seeds: the worst error of sampled by seeds 0 to {}, and how often its "
+          "interval covers the referee's cycles. Utilisation: the worst unit's, in percentage points "
+          "of the referee's. Of several frames of one trace, seconds are their average (and so is what "
+          "the rate divides by), and utilisation is of all of them.",
+          kSampleSeeds - 1),
       {{"scene"},
        {"size", number},
        {"machine"},

@@ -238,7 +238,7 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
 
 WorkCache::WorkCache(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
-  if (!std::filesystem::is_directory(folder_, error)) made_.emplace(folder_);
+  if (folder_ == "-" || !std::filesystem::is_directory(folder_, error)) made_.emplace(folder_);
 }
 
 std::filesystem::path WorkCache::path_of(const std::string& key) const {
@@ -254,7 +254,7 @@ WorkCache::Found WorkCache::read(const std::string& key, const Trace& trace, Wor
     throw UserError(path.string(), 0, "stands in the place of a file of the cache, expected that or nothing");
   const Header header = header_of(path);
   if (header.magic != kMagic || header.key != key_of(key) ||
-      header.size != std::filesystem::file_size(path) - sizeof header)
+      header.size != std::filesystem::file_size(path, error) - sizeof header)
     return Found::damaged;  // before memory is taken for all of it
   const std::string bytes = file_bytes(path);
   const std::string_view body = std::string_view(bytes).substr(std::min(bytes.size(), sizeof header));

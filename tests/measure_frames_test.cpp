@@ -10,14 +10,14 @@ const std::string kScript = std::string(SPLATSCOPE_SOURCE) + "/tests/measure_fra
 
 TEST(MeasureFrames, PrintsJsonOfEveryFidelity) {
   const ScratchFolder folder;
-  folder.file("a \"tiny\\one\".toml",
+  folder.file("a \"tiny\\new\".toml",
               "[surfels]\ncolumns = 4\nrows = 4\n[frame]\nwidth = 16\nheight = 16\n[capture]\nviews = 1\n");
   const Outcome outcome = run_program(
-      {"--rounds", "2", "--scene", "a \"tiny\\one\".toml", SPLATSCOPE_PROGRAM, SPLATSCOPE_PROGRAM},
+      {"--rounds", "2", "--scene", "a \"tiny\\new\".toml", SPLATSCOPE_PROGRAM, SPLATSCOPE_PROGRAM},
       folder.path(), kScript);
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   const auto measured = nlohmann::json::parse(outcome.out);
-  EXPECT_EQ(measured["scene"], "a \"tiny\\one\".toml");
+  EXPECT_EQ(measured["scene"], "a \"tiny\\new\".toml");
   EXPECT_EQ(measured["rounds"], 2);
   for (const char* fidelity :
        {"functional", "functional_one_core", "throughput", "sampled", "cycle", "referee"}) {

@@ -157,10 +157,10 @@ void Timeline::booked(const Unit& unit, std::uint32_t book, Cycle from, Cycle un
   write(slice_heads_[unit.number()], from, kSliceMiddle, until - from, slice_tails_[book], until);
 }
 
-void Timeline::count(Counter& counter, std::uint64_t value, Cycle at) {
+void Timeline::count(Counter& counter, std::uint64_t value, Cycle at, Cycle now) {
   if (value == counter.value) return;
   counter.value = value;
-  write(kCounterHead, at, counter.middle, value, "}}", at);
+  write(kCounterHead, at, counter.middle, value, "}}", now);
 }
 
 // Since the last sample, however long that is: a counter holds its value from a sample on.
@@ -168,7 +168,7 @@ void Timeline::count_buses(Cycle now) {
   for (std::size_t i = 0; i < buses_.size(); ++i) {
     const std::uint64_t clocks = data_clocks(*machine_->memory[i], now);
     if (now > sampled_at_ && sampled_at_ >= window_.first)
-      count(buses_[i], 100 * (clocks - data_clocks_[i]) / (now - sampled_at_), sampled_at_);
+      count(buses_[i], 100 * (clocks - data_clocks_[i]) / (now - sampled_at_), sampled_at_, now);
     data_clocks_[i] = clocks;
   }
   sampled_at_ = now;
@@ -180,7 +180,7 @@ Cycle Timeline::sample(Cycle now) {
   if (now > window_.last) return next_sample_ = kNever;
   if (now < window_.first) return next_sample_ = window_.first;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    count(channels_[i], machine_->channels[i]->items(), now);
+    count(channels_[i], machine_->channels[i]->items(), now, now);
   }
   return next_sample_ = now + kCounterInterval;
 }

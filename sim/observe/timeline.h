@@ -27,7 +27,7 @@ class Timeline final : public Observer {
   // Writes the commands' track and the end of the text.
   void end(const Result& result) override;
 
-  // All before is shown, and nothing that begins here or later: it did not fit into `most_bytes`. kNever:
+  // What was known here is shown, and what begins later is not: it did not fit into `most_bytes`. kNever:
   // everything did.
   Cycle cut_at() const { return cut_at_; }
 
@@ -45,7 +45,7 @@ class Timeline final : public Observer {
   void write(std::string_view head, Cycle first, std::string_view middle, std::uint64_t second,
              std::string_view tail, Cycle now);
   bool clip(Cycle& from, Cycle& until) const;
-  void count(Counter& counter, std::uint64_t value, Cycle at);
+  void count(Counter& counter, std::uint64_t value, Cycle at, Cycle now);
   void count_buses(Cycle now);
   void flush();
 

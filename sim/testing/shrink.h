@@ -28,15 +28,15 @@ inline void leave_out_runs(Choices& failing, std::size_t size, const Fails& fail
 // The choice at `place`: 0, or the least power of two with which it fails.
 inline void lower(Choices& failing, std::size_t place, const Fails& fails, std::size_t& tries) {
   const std::uint32_t given = failing[place];
-  for (std::uint32_t low = 0; low < given && tries > 0; low = low == 0 ? 1 : 2 * low, --tries) {
-    failing[place] = low;
+  for (std::uint64_t low = 0; low < given && tries > 0; low = low == 0 ? 1 : 2 * low, --tries) {
+    failing[place] = static_cast<std::uint32_t>(low);
     if (fails(failing)) return;
   }
   failing[place] = given;
 }
 
-// A list that fails as the given one does, with no run of choices that could be left out and none that could
-// be lower: delta debugging (Zeller and Hildebrandt 2002). Ends early when no `tries` are left.
+// A list that fails too, by delta debugging (Zeller and Hildebrandt 2002): no single choice can be left out,
+// and none be 0 or a lower power of two. Ends early when no `tries` are left.
 inline Choices shrunk(Choices failing, const Fails& fails, std::size_t& tries) {
   for (Choices before; before != failing && tries > 0;) {
     before = failing;
