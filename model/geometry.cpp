@@ -283,7 +283,6 @@ std::uint32_t Indices::quads_ahead(std::uint32_t first_index, const GeometryBatc
 void Indices::fill_quads(std::uint32_t first_index, std::uint32_t quads, GeometryBatch& batch) {
   const std::uint32_t count = quads * kQuad, first_vertex = bindings_->draw.base_vertex + first_index;
   const auto place = static_cast<std::uint32_t>(batch.vertices.size());
-  const Known start{shaded_ + 1, batch_ + place};
   const auto append = [](auto& values, std::uint32_t more) {
     values.resize(values.size() + more);
     return std::span(values).last(more);
@@ -291,15 +290,12 @@ void Indices::fill_quads(std::uint32_t first_index, std::uint32_t quads, Geometr
   const auto vertices = append(batch.vertices, count), shaded = append(batch.shaded_vertices, count);
   std::iota(vertices.begin(), vertices.end(), first_vertex);
   std::iota(shaded.begin(), shaded.end(), first_vertex);
-  if (is_one_run_) {
-    if (run_end_ == 0) {
-      run_first_ = first_index;
-      run_start_ = start;
-    }
-    run_end_ = first_index + count;
-  } else {
-    for (std::uint32_t i = 0; i < count; ++i) known_[first_index + i] = {start.inserted + i, start.batch + i};
+  if (!is_one_run_ || run_end_ == 0) {
+    run_first_ = first_index;
+    run_start_ = {shaded_ + 1, batch_ + place};
   }
+  run_end_ = first_index + count;
+  if (!is_one_run_) write_down();
   shaded_ += count;
   for (std::uint32_t quad = 0; quad < quads; ++quad) {
     const auto at = [&](std::uint32_t i) { return static_cast<std::uint16_t>(place + quad * kQuad + i); };

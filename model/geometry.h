@@ -107,9 +107,10 @@ class Indices {
   const DrawBindings* bindings_ = nullptr;
   std::uint32_t cache_entries_;
   // Splats are quads of indices that all follow one another, each a step further in batch and FIFO: of such a
-  // draw the first says all. It is written down, an entry each, once something else comes.
+  // draw the first says all. It is written down, an entry each, once something else comes; later runs at
+  // once.
   bool is_one_run_ = true;
-  std::uint32_t run_first_ = 0, run_end_ = 0;  // indices
+  std::uint32_t run_first_ = 0, run_end_ = 0;  // indices of the last run
   Known run_start_;                            // of the first one
   std::vector<Known> known_;                   // of all indices, where the draw is more than a run
   std::uint32_t position_ = 0;                 // in the draw

@@ -14,7 +14,7 @@
 #include "sim/testing/random_trace.h"
 #include "sim/testing/shrink.h"
 
-// Fidelity `cycle` against the referee, on random traces and machines. A failure is shrunk to a smallest one.
+// Fidelity `cycle` against the referee, on random traces and machines. A failure is shrunk to a small one.
 namespace splatscope::sim {
 namespace {
 

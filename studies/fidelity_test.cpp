@@ -41,11 +41,15 @@ TEST(FidelityStudy, EveryFidelityStandsBesideTheReferee) {
   }
 }
 
-TEST(FidelityStudy, EachFrameOfATraceIsJudged) {
-  const traces::Scene scene = traces::parse_scene(
+traces::Scene small_plane() {
+  return traces::parse_scene(
       "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
       "[capture]\nviews = 1\nframe_size = 64\n",
       "plane");
+}
+
+TEST(FidelityStudy, EachFrameOfATraceIsJudged) {
+  const traces::Scene scene = small_plane();
   const auto twice = [&](const Machine& machine) {
     Trace trace = traces::record(scene, machine.numbers).trace;
     const std::vector<Command> again = trace.commands;
@@ -70,10 +74,7 @@ TEST(FidelityStudy, EachFrameOfATraceIsJudged) {
 }
 
 TEST(FidelityStudy, ATableIsSummedUp) {
-  const traces::Scene scene = traces::parse_scene(
-      "[surfels]\ngenerator = \"plane\"\ncolumns = 20\nrows = 20\n[frame]\nwidth = 64\nheight = 64\n"
-      "[capture]\nviews = 1\nframe_size = 64\n",
-      "plane");
+  const traces::Scene scene = small_plane();
   const std::vector<FidelityRow> rows = fidelity_rows(frame_of(scene), 1);
   EXPECT_EQ(rows.back().fidelity, Fidelity::referee);
   EXPECT_EQ(rows.back().resolution, 64);

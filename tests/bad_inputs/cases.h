@@ -81,11 +81,12 @@ class BadInputs {
     const bool shader = !arguments.empty() && arguments.front() == "shader";  // the rule that it breaks
     EXPECT_TRUE(outcome.status != 2 || shader || outcome.error.find("expected") != std::string::npos)
         << outcome.error;
-    for (const auto& [path, text] : contents()) {
+    const auto after = contents();
+    for (const auto& [path, text] : after) {
       const auto found = before.find(path);
       EXPECT_TRUE(found != before.end() && found->second == text) << path << " is new or another";
     }
-    EXPECT_EQ(contents().size(), before.size()) << "files are gone";
+    EXPECT_EQ(after.size(), before.size()) << "files are gone";
   }
 
   // Files with their text; of gigabytes of zeros the size says enough.

@@ -4,14 +4,13 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
 #include "model/error.h"
+#include "model/input_file.h"
 
 namespace splatscope::traces {
 namespace {
@@ -21,8 +20,7 @@ using nlohmann::json;
 // The JSON of a file: all of a .gltf, the first chunk of a .glb, whose three words of header and two of the
 // chunk stand before it.
 std::string json_text(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text = file_bytes(path);
   constexpr std::size_t kHeader = 20;
   if (!text.starts_with("glTF") || text.size() < kHeader) return text;
   std::uint32_t length = 0;

@@ -156,12 +156,10 @@ class Reorder {
       nodes_.push_back({reads_of(part.instruction), writes_of(part.instruction)});
     }
     for (std::size_t i = count_; i-- > 0;) {
-      for (std::size_t j = i + 1; j < count_; ++j) {
-        const int apart = distance(i, j);
-        if (apart < 0) continue;
-        nodes_[i].height = std::max(nodes_[i].height, nodes_[j].height + apart);
-        ++nodes_[j].waits_for;
-      }
+      each_bound(i, [&](Node& later, int apart) {
+        nodes_[i].height = std::max(nodes_[i].height, later.height + apart);
+        ++later.waits_for;
+      });
     }
   }
 
@@ -204,6 +202,13 @@ class Reorder {
     return (a.reads & b.writes) != 0 ? 0 : -1;
   }
 
+  // function(node, slots) for each that must stand so many slots behind `earlier`.
+  template <typename Function>
+  void each_bound(std::size_t earlier, Function function) {
+    for (std::size_t later = earlier + 1; later < count_; ++later)
+      if (const int apart = distance(earlier, later); apart >= 0) function(nodes_[later], apart);
+  }
+
   bool is_ready(std::size_t index) const {
     const Node& node = nodes_[index];
     return !node.placed && node.waits_for == 0 && node.earliest <= now_ &&
@@ -227,12 +232,10 @@ class Reorder {
 
   void place(std::size_t index, IssueSlot& slot) {
     nodes_[index].placed = true;
-    for (std::size_t j = index + 1; j < count_; ++j) {
-      const int apart = distance(index, j);
-      if (apart < 0) continue;
-      --nodes_[j].waits_for;
-      nodes_[j].earliest = std::max(nodes_[j].earliest, now_ + apart);
-    }
+    each_bound(index, [&](Node& later, int apart) {
+      --later.waits_for;
+      later.earliest = std::max(later.earliest, now_ + apart);
+    });
     if (is_scalar(parts_[index].instruction.opcode)) scalar_free_ = now_ + scalar_gap_;
     add(slot, parts_[index]);
   }
