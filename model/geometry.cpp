@@ -75,11 +75,11 @@ void GeometryBatch::process() {
     // Of quads, triangles 2n and 2n + 1 are of vertices 4n to 4n + 3.
     const auto outside = std::span(projected_.outside).subspan(2 * first, only_quads ? 2 * count : 0);
     if (only_quads && std::reduce(outside.begin(), outside.end(), 0, std::bit_or{}) == 0) {
-      assemble_quads(first, first + count);
+      set_up_quads(first, count);
     } else {
       for (BatchTriangle& triangle : std::span(triangles).subspan(first, count)) assemble(triangle);
+      set_up();
     }
-    set_up();
   }
 }
 
@@ -114,25 +114,15 @@ void GeometryBatch::shade() {
   }
 }
 
-// assemble() of triangles of which nothing is outside.
-void GeometryBatch::assemble_quads(std::size_t first_triangle, std::size_t end) {
-  const auto copy = [&](const std::vector<double>& vertices, auto& corners) {
-    for (std::size_t triangle = 0; triangle < end - first_triangle; triangle += 2) {
-      const double* const quad = vertices.data() + 2 * (first_triangle + triangle);
-      std::fill_n(corners[0] + triangle, 2, quad[0]);
-      std::copy_n(quad + 1, 2, corners[1] + triangle);
-      std::copy_n(quad + 2, 2, corners[2] + triangle);
-    }
-  };
-  copy(projected_.x, corners_.x);
-  copy(projected_.y, corners_.y);
-  copy(projected_.z, corners_.z);
-  copy(projected_.inverse_w, corners_.inverse_w);
-  for (std::size_t triangle = first_triangle; triangle < end; ++triangle) {
-    const auto [a, b, c] = triangles[triangle].vertices;
-    piece_corners_.push_back({a, b, c});
-  }
-  waiting_ = end - first_triangle;
+// assemble() and set_up() of triangles of which nothing is outside.
+void GeometryBatch::set_up_quads(std::size_t first, std::size_t count) {
+  static_assert(2 * raster::Corners::kCapacity % raster::kQuadVertices == 0 &&
+                kVertices % raster::kQuadVertices == 0);
+  std::ranges::transform(std::span(triangles).subspan(first, count), std::back_inserter(piece_corners_),
+                         &BatchTriangle::vertices);
+  const int bits = options_.formats.subpixel_bits;
+  raster::set_up_quads(projected_, 2 * first, viewport_, bits, raster::driver_rounding(bits),
+                       !bindings_->attributes.empty(), last_setups(count));
 }
 
 void GeometryBatch::assemble(BatchTriangle& triangle) {
@@ -191,12 +181,15 @@ void GeometryBatch::add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c)
 }
 
 void GeometryBatch::set_up() {
-  if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
   const int bits = options_.formats.subpixel_bits;
-  const auto out = std::span(setups_).subspan(piece_corners_.size() - waiting_, waiting_);
   raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits), !bindings_->attributes.empty(),
-                 out);
+                 last_setups(waiting_));
   waiting_ = 0;
+}
+
+std::span<raster::TriangleSetup> GeometryBatch::last_setups(std::size_t count) {
+  if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
+  return std::span(setups_).first(piece_corners_.size()).last(count);
 }
 
 std::int64_t GeometryBatch::pixels_at_most() const {

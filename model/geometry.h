@@ -55,13 +55,14 @@ class GeometryBatch {
 
  private:
   void shade();
-  void assemble_quads(std::size_t first_triangle, std::size_t end);
+  void set_up_quads(std::size_t first, std::size_t count);
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);
   template <typename Function>
   void each_attribute(Function function);
   void add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c);
   void set_up();
+  std::span<raster::TriangleSetup> last_setups(std::size_t count);  // of the last pieces
 
   const DrawBindings* bindings_ = nullptr;
   const RenderOptions& options_;

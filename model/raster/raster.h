@@ -66,6 +66,13 @@ struct Corners {
 void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
             bool interpolates, std::span<TriangleSetup> out);
 
+// The same for triangles 0 1 2 and 0 2 3 of each four vertices, from number `first_vertex` on, in turn: any
+// number. Behind the last ones the arrays have room up to a whole number of kQuadVertices.
+inline constexpr std::size_t kQuadVertices = 32;
+void set_up_quads(const primitive::ProjectedVertices& vertices, std::size_t first_vertex,
+                  const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates,
+                  std::span<TriangleSetup> out);
+
 // 8x8-pixel tiles that the rectangle of a setup touches. It has the pixels whose centres lie on its right and
 // lower side, which the fill rule leaves out: the scan looks at them too.
 std::uint32_t tiles_touched(const TriangleSetup& setup);

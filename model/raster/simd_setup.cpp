@@ -163,26 +163,70 @@ HWY_INLINE void read(const Lanes& in, std::size_t lane, bool all, TriangleSetup&
     *planes[k] = {in.planes[k][0][lane], in.planes[k][1][lane], in.planes[k][2][lane]};
 }
 
+// A corner of each triangle of a register.
+struct Corner {
+  V x, y, snapped_x, snapped_y, z, inverse_w;
+};
+
+// All triangles alike.
+class SetUp {
+ public:
+  SetUp(const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates)
+      : viewport_(viewport), grid_(subpixel_bits), rounding_(set(rounding)), interpolates_(interpolates) {}
+
+  Corner corner(V x, V y, V z, V inverse_w) const {
+    return {x, y, grid_.snap(hn::Add(x, rounding_)), grid_.snap(hn::Add(y, rounding_)), z, inverse_w};
+  }
+
+  // Every `step`th of `out`, at most a register of them.
+  void operator()(const Corner& a, const Corner& b, const Corner& c, std::span<TriangleSetup> out,
+                  std::size_t step) {
+    set_up_coverage({{a.snapped_x, b.snapped_x, c.snapped_x}, {a.snapped_y, b.snapped_y, c.snapped_y}}, grid_,
+                    viewport_, lanes_);
+    const V z[] = {a.z, b.z, c.z}, inverse_w[] = {a.inverse_w, b.inverse_w, c.inverse_w};
+    set_up_planes({{a.x, b.x, c.x}, {a.y, b.y, c.y}}, z, inverse_w, interpolates_, lanes_);
+    for (std::size_t lane = 0; lane < hn::Lanes(D{}) && lane * step < out.size(); ++lane)
+      read(lanes_, lane, interpolates_, out[lane * step]);
+  }
+
+ private:
+  const primitive::Viewport& viewport_;
+  Grid grid_;
+  V rounding_;
+  bool interpolates_;
+  Lanes lanes_;
+};
+
 void set_up(const Corners& in, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
             bool interpolates, std::span<TriangleSetup> out) {
-  const Grid grid(subpixel_bits);
-  const V round = set(rounding);
-  Lanes lanes;
+  SetUp set_up(viewport, subpixel_bits, rounding, interpolates);
   for (std::size_t first = 0; first < out.size(); first += hn::Lanes(D{})) {
-    Points exact, snapped;
-    V z[3], inverse_w[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      exact.x[k] = hn::Load(D{}, in.x[k] + first);
-      exact.y[k] = hn::Load(D{}, in.y[k] + first);
-      snapped.x[k] = grid.snap(hn::Add(exact.x[k], round));
-      snapped.y[k] = grid.snap(hn::Add(exact.y[k], round));
-      z[k] = hn::Load(D{}, in.z[k] + first);
-      inverse_w[k] = hn::Load(D{}, in.inverse_w[k] + first);
-    }
-    set_up_coverage(snapped, grid, viewport, lanes);
-    set_up_planes(exact, z, inverse_w, interpolates, lanes);
-    for (std::size_t lane = 0; lane < hn::Lanes(D{}) && first + lane < out.size(); ++lane)
-      read(lanes, lane, interpolates, out[first + lane]);
+    const auto corner = [&](std::size_t k) HWY_ATTR {
+      const auto read = [&](const auto& values) HWY_ATTR { return hn::Load(D{}, values[k] + first); };
+      return set_up.corner(read(in.x), read(in.y), read(in.z), read(in.inverse_w));
+    };
+    set_up(corner(0), corner(1), corner(2), out.subspan(first), 1);
+  }
+}
+
+// Two corners of a quad are in both of its triangles.
+void set_up_quads(const primitive::ProjectedVertices& in, std::size_t first_vertex,
+                  const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates,
+                  std::span<TriangleSetup> out) {
+  SetUp set_up(viewport, subpixel_bits, rounding, interpolates);
+  for (std::size_t first = 0; first < out.size(); first += 2 * hn::Lanes(D{})) {
+    const auto read = [&](const std::vector<double>& values, V* four) HWY_ATTR {
+      hn::LoadInterleaved4(D{}, values.data() + first_vertex + 2 * first, four[0], four[1], four[2], four[3]);
+    };
+    V x[4], y[4], z[4], inverse_w[4];
+    read(in.x, x);
+    read(in.y, y);
+    read(in.z, z);
+    read(in.inverse_w, inverse_w);
+    Corner corners[4];
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = set_up.corner(x[k], y[k], z[k], inverse_w[k]);
+    for (std::size_t k = 0; k < 2; ++k)
+      set_up(corners[0], corners[1 + k], corners[2 + k], out.subspan(first + k), 2);
   }
 }
 
@@ -192,10 +236,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace splatscope::raster {
 HWY_EXPORT(set_up);
+HWY_EXPORT(set_up_quads);
 
 void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
             bool interpolates, std::span<TriangleSetup> out) {
   HWY_DYNAMIC_DISPATCH(set_up)(corners, viewport, subpixel_bits, rounding, interpolates, out);
+}
+
+void set_up_quads(const primitive::ProjectedVertices& vertices, std::size_t first_vertex,
+                  const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates,
+                  std::span<TriangleSetup> out) {
+  HWY_DYNAMIC_DISPATCH(set_up_quads)
+  (vertices, first_vertex, viewport, subpixel_bits, rounding, interpolates, out);
 }
 }  // namespace splatscope::raster
 #endif
