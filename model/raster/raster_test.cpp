@@ -191,6 +191,19 @@ bool same(const Plane& a, const Plane& b) {
   return std::memcmp(&a, &b, sizeof(Plane)) == 0;
 }
 
+void expect_same(const TriangleSetup& a, const TriangleSetup& b) {
+  ASSERT_EQ(a.covers, b.covers);
+  ASSERT_EQ(a.winding, b.winding);
+  if (!a.covers) return;
+  for (std::size_t e = 0; e < 3; ++e)
+    ASSERT_EQ(std::tuple(a.edges[e].origin, a.edges[e].dx, a.edges[e].dy),
+              std::tuple(b.edges[e].origin, b.edges[e].dx, b.edges[e].dy));
+  ASSERT_EQ(std::tuple(a.left, a.top, a.right, a.bottom), std::tuple(b.left, b.top, b.right, b.bottom));
+  ASSERT_EQ(std::tuple(a.nearest, a.furthest), std::tuple(b.nearest, b.furthest));
+  ASSERT_TRUE(same(a.depth, b.depth) && same(a.weight1, b.weight1) && same(a.weight2, b.weight2) &&
+              same(a.scale, b.scale));
+}
+
 // Every SIMD target gives the setups, the coverage and the depths of the first one, which has no SIMD.
 TEST(Raster, EverySimdTargetGivesTheSameBits) {
   std::mt19937 random(random_seed());
@@ -228,23 +241,47 @@ TEST(Raster, EverySimdTargetGivesTheSameBits) {
           drawn.windows.push_back(window);
       }
       if (!first) first = drawn;
-      for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const TriangleSetup &a = first->setups[i], &b = drawn.setups[i];
-        ASSERT_EQ(a.covers, b.covers);
-        ASSERT_EQ(a.winding, b.winding);
-        if (!a.covers) continue;
-        for (std::size_t e = 0; e < 3; ++e)
-          ASSERT_EQ(std::tuple(a.edges[e].origin, a.edges[e].dx, a.edges[e].dy),
-                    std::tuple(b.edges[e].origin, b.edges[e].dx, b.edges[e].dy));
-        ASSERT_TRUE(same(a.depth, b.depth) && same(a.weight1, b.weight1) && same(a.weight2, b.weight2) &&
-                    same(a.scale, b.scale));
-      }
+      for (std::size_t i = 0; i < triangles.size(); ++i)
+        ASSERT_NO_FATAL_FAILURE(expect_same(first->setups[i], drawn.setups[i]));
       ASSERT_EQ(first->windows.size(), drawn.windows.size());
       for (std::size_t i = 0; i < drawn.windows.size(); ++i) {
         const Window &a = first->windows[i], &b = drawn.windows[i];
         ASSERT_EQ(std::tuple(a.x, a.y, a.covered, a.passed), std::tuple(b.x, b.y, b.covered, b.passed));
       }
       ASSERT_EQ(first->depth, drawn.depth);
+    });
+  }
+}
+
+// Quads in which any corner can be anywhere, also none of whose triangles covers a pixel, from any number of
+// them that fit into Corners.
+TEST(Raster, QuadsAreSetUpAsTheirTriangles) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> anywhere(-20, 660), offset(-12, 12), z(-0.1, 1.1), w(0.01, 1);
+  constexpr std::size_t kFirst = kQuadVertices, kMost = Corners::kCapacity / 2;
+  primitive::ProjectedVertices vertices;
+  for (auto* values : {&vertices.x, &vertices.y, &vertices.z, &vertices.inverse_w})
+    values->resize(kFirst + 4 * kMost);
+  for (std::size_t quads = 1; quads <= kMost; ++quads) {
+    const auto corners = std::make_unique<Corners>();
+    for (std::size_t quad = 0; quad < quads; ++quad) {
+      const double x = anywhere(random), y = anywhere(random);
+      for (std::size_t i = kFirst + 4 * quad; i < kFirst + 4 * quad + 4; ++i) {
+        vertices.x[i] = x + offset(random), vertices.y[i] = y + offset(random);
+        vertices.z[i] = z(random), vertices.inverse_w[i] = w(random);
+      }
+      for (std::size_t triangle = 0; triangle < 2; ++triangle)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const std::size_t i = kFirst + 4 * quad + (corner == 0 ? 0 : corner + triangle);
+          corners->set(2 * quad + triangle, corner, vertices.x[i], vertices.y[i], vertices.z[i],
+                       vertices.inverse_w[i]);
+        }
+    }
+    testing::on_each_simd_target([&] {
+      std::vector<TriangleSetup> alone(2 * quads), together(2 * quads);
+      raster::set_up(*corners, kViewport, 4, driver_rounding(4), true, alone);
+      set_up_quads(vertices, kFirst, kViewport, 4, driver_rounding(4), true, together);
+      for (std::size_t i = 0; i < 2 * quads; ++i) ASSERT_NO_FATAL_FAILURE(expect_same(alone[i], together[i]));
     });
   }
 }
