@@ -138,7 +138,7 @@ FrameRun run_throughput(const Trace& trace, const Machine& machine, const Render
   return {std::move(rendered), estimate.result(), 0, {}, {}};
 }
 
-// The time after the function.
+// The time after the function, if any.
 FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
                    const TimingOptions& timing) {
@@ -172,10 +172,16 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
     WorkQueue& queue;
     ~Stop() { queue.stop(); }
   } stop{queue};
-  const auto scheduler = fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
-  sim::Result result = sim::simulate_beside(
-      trace, [&](std::size_t) -> const DrawWork& { return queue.next(); }, machine, scheduler, progress,
-      timing.observers);
+  const sim::WorkSource work_of = [&](std::size_t) -> const DrawWork& { return queue.next(); };
+  const auto time = [&] {
+    if (fidelity == Fidelity::sampled)
+      return sim::estimate_sampled_beside(trace, work_of, machine, timing.seed, progress);
+    const bool every_cycle = fidelity == Fidelity::referee;
+    return sim::simulate_beside(trace, work_of, machine,
+                                every_cycle ? sim::Scheduler::referee : sim::Scheduler::skip_ahead, progress,
+                                timing.observers);
+  };
+  sim::Result result = time();
   return {function.get(), std::move(result), 0, {}, {}};
 }
 
@@ -194,9 +200,9 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
   if (timing.heat_maps) options.record = Record::everything;
   const auto run_it = [&] {
     if (options.record == Record::samples) return run_throughput(trace, machine, options, progress, on_frame);
-    if (fidelity == Fidelity::cycle || fidelity == Fidelity::referee)
-      return run_beside(trace, machine, fidelity, options, progress, on_frame, timing);
-    return run_after(trace, machine, fidelity, options, progress, on_frame, timing);
+    if (fidelity == Fidelity::functional || fidelity == Fidelity::throughput)
+      return run_after(trace, machine, fidelity, options, progress, on_frame, timing);
+    return run_beside(trace, machine, fidelity, options, progress, on_frame, timing);
   };
   FrameRun run = run_it();
   run.host_seconds = seconds_since(start);

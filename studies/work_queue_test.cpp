@@ -91,6 +91,12 @@ TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
   EXPECT_TRUE(run.rendered.work.empty());
   for (std::size_t pixel = 0; pixel < 128 * 128; ++pixel)
     ASSERT_EQ(run.rendered.frame.color(pixel), rendered.frame.color(pixel)) << "pixel " << pixel;
+  const sim::Result estimate = time_frame(trace, rendered.work, machine, Fidelity::sampled, {.seed = 5});
+  EXPECT_GT(estimate.cycles_plus_minus, 0);
+  const FrameRun sampled = run_frame(trace, machine, Fidelity::sampled, {}, {}, {.seed = 5});
+  EXPECT_EQ(sampled.timing->cycles, estimate.cycles);
+  EXPECT_EQ(sampled.timing->cycles_plus_minus, estimate.cycles_plus_minus);
+  EXPECT_TRUE(sampled.rendered.work.empty());
 }
 
 // Neither before nor behind: where the first picture is done, the timing has begun.

@@ -111,15 +111,21 @@ struct Interval {
 
 class Sampler {
  public:
-  Sampler(const Trace& trace, std::span<const DrawWork> work, const Machine& machine, std::uint64_t seed)
+  Sampler(const Trace& trace, const WorkSource& work_of, const Machine& machine, std::uint64_t seed,
+          const std::function<void(double)>& progress)
       : trace_(trace),
+        work_of_(work_of),
+        progress_(progress),
         filling_(stretches_to_fill(machine)),
         start_(kFillings * filling_),
         layout_(lay_out(trace, machine)),
-        draws_(prepare_draws(trace, work, machine, layout_)) {
-    expect(machine);
-    thin(seed);
-    machine_ = build_machine(trace, draws_, layout_, machine, Scheduler::skip_ahead);
+        random_(seed) {
+    PreparedDraws draws = prepare_draws(trace, machine, layout_);
+    stretches_.emplace(trace, machine, layout_, draws);
+    count_units();
+    machine_ = build_machine(trace, std::move(draws), layout_, machine, Scheduler::skip_ahead);
+    machine_->command->on_draw([this](std::uint32_t draw) { begin(draw); });
+    intervals_.emplace_back();
   }
 
   Result result() {
@@ -151,47 +157,49 @@ class Sampler {
   };
 
   // Units of a draw between its start and its end.
-  std::size_t units_between(const DrawJob& job) const {
-    const std::size_t stretches = job.work->triangles.size() / kStretch;
+  std::size_t units_between(std::size_t triangles) const {
+    const std::size_t stretches = triangles / kStretch;
     return stretches < start_ + kTail + kShortest ? 0 : (stretches - start_ - kTail) / kUnit;
   }
 
-  // What Stretches expect of every unit.
-  void expect(const Machine& machine) {
-    Stretches stretches(trace_, machine, layout_, draws_);
+  void count_units() {
     std::size_t frame = 0;
     for (const Command& command : trace_.commands) {
-      if (std::holds_alternative<Clear>(command)) stretches.clear();
       if (std::holds_alternative<Present>(command)) ++frame;
-      if (!std::holds_alternative<Draw>(command)) continue;
-      const DrawJob& job = draws_.jobs[population_of_.size()];
-      Population& population = populations_[state_of(frame, *job.draw)];
+      const Draw* draw = std::get_if<Draw>(&command);
+      if (draw == nullptr) continue;
+      Population& population = populations_[state_of(frame, *draw)];
+      population.units += units_between(draw->index_count / 3);
       population_of_.push_back(&population);
-      const std::vector<Clocks> clocks = stretches.of(job);
-      std::vector<double>& units = expected_.emplace_back(units_between(job));
-      for (std::size_t i = 0; i < units.size() * kUnit; ++i)
-        units[i / kUnit] += *std::ranges::max_element(clocks[start_ + i]);
-      population.units += units.size();
-      for (const double unit : units) population.expected += unit;
     }
   }
 
-  // Each draw has a start of its own: samples at equal distances through all would fall in step with draws
-  // that are alike.
-  void thin(std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    intervals_.emplace_back();
-    thin_.reserve(draws_.jobs.size());
-    for (std::size_t i = 0; i < draws_.jobs.size(); ++i) {
-      DrawJob& job = draws_.jobs[i];
-      Population& population = *population_of_[i];
-      if (!population.is_sampled()) continue;
-      thin_draw(job, population, expected_[i], static_cast<double>(random() >> 11) * 0x1p-53);
-    }
+  // Of one draw, when its work is at hand. Each has a start of its own: samples at equal distances through
+  // all would fall in step with draws that are alike.
+  void begin(std::uint32_t draw) {
+    if (progress_) progress_(static_cast<double>(draw) / static_cast<double>(machine_->jobs.size()));
+    DrawJob& job = machine_->jobs[draw];
+    give_work(job, work_of_(draw));
+    Population& population = *population_of_[draw];
+    const std::vector<double> expected = expect(job);
+    for (const double unit : expected) population.expected += unit;
+    if (population.is_sampled())
+      thin(job, population, expected, static_cast<double>(random_() >> 11) * 0x1p-53);
   }
 
-  void thin_draw(DrawJob& job, Population& population, const std::vector<double>& expected, double start) {
-    ThinDraw& thin = thin_.emplace_back(job);
+  // What Stretches expect of every unit.
+  std::vector<double> expect(const DrawJob& job) {
+    for (; next_command_ < job.command; ++next_command_)
+      if (std::holds_alternative<Clear>(trace_.commands[next_command_])) stretches_->clear();
+    const std::vector<Clocks> clocks = stretches_->of(job);
+    std::vector<double> units(units_between(job.work->triangles.size()));
+    for (std::size_t i = 0; i < units.size() * kUnit; ++i)
+      units[i / kUnit] += *std::ranges::max_element(clocks[start_ + i]);
+    return units;
+  }
+
+  void thin(DrawJob& job, Population& population, const std::vector<double>& expected, double start) {
+    ThinDraw& thin = thin_.emplace(job);  // in place of the one before, which is done
     const std::size_t triangles = job.work->triangles.size();
     const std::size_t stretches = (triangles + kStretch - 1) / kStretch;
     std::size_t kept = 0;  // stretches
@@ -283,14 +291,17 @@ class Sampler {
   }
 
   const Trace& trace_;
+  const WorkSource& work_of_;
+  const std::function<void(double)>& progress_;
   const std::size_t filling_;  // stretches that run before each sample
   const std::size_t start_;    // and at the start of a draw
   MemoryLayout layout_;
-  PreparedDraws draws_;
+  std::optional<Stretches> stretches_;
+  std::size_t next_command_ = 0;  // that `stretches_` are to see
+  std::mt19937_64 random_;
   std::map<State, Population> populations_;
-  std::vector<Population*> population_of_;     // each draw
-  std::vector<std::vector<double>> expected_;  // by draw and unit
-  std::vector<ThinDraw> thin_;
+  std::vector<Population*> population_of_;  // each draw
+  std::optional<ThinDraw> thin_;            // the last one that was thinned
   std::unique_ptr<SimulatedMachine> machine_;
   std::vector<Interval> intervals_;  // of the run; interval i begins at notes_[i]
   std::vector<Note> notes_;
@@ -301,7 +312,16 @@ class Sampler {
 
 Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                         std::uint64_t seed) {
-  return Sampler(trace, work, machine, seed).result();
+  const auto is_draw = [](const Command& command) { return std::holds_alternative<Draw>(command); };
+  if (static_cast<std::size_t>(std::ranges::count_if(trace.commands, is_draw)) != work.size())
+    throw ModelError("there are not as many work records as draws");
+  return estimate_sampled_beside(
+      trace, [&](std::size_t draw) -> const DrawWork& { return work[draw]; }, machine, seed);
+}
+
+Result estimate_sampled_beside(const Trace& trace, const WorkSource& work_of, const Machine& machine,
+                               std::uint64_t seed, const std::function<void(double)>& progress) {
+  return Sampler(trace, work_of, machine, seed, progress).result();
 }
 
 }  // namespace splatscope::sim

@@ -36,4 +36,9 @@ namespace splatscope::sim {
 Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                         std::uint64_t seed = 1);
 
+// The same while the work is still being computed, as simulate_beside() does. `progress` is told the fraction
+// of the draws that are done as the next one begins.
+Result estimate_sampled_beside(const Trace& trace, const WorkSource& work_of, const Machine& machine,
+                               std::uint64_t seed = 1, const std::function<void(double)>& progress = {});
+
 }  // namespace splatscope::sim

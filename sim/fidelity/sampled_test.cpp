@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "model/error.h"
 #include "sim/fidelity/thinning.h"
 #include "sim/testing/random_trace.h"
 
@@ -229,6 +230,41 @@ TEST(Sampled, SmallTracesAreSimulatedWhole) {
     }
     EXPECT_EQ(sampled.units_left_out, simulated.units_left_out);
   }
+}
+
+// Each draw's work in the place of the one before it, also of frames that are sampled.
+TEST(Sampled, WorkThatComesAsItIsNeededGivesTheSame) {
+  const RandomTrace made = frames_of_two_draws({{kTriangles, 1}, {kTriangles, 4}}, 500);
+  const Machine machine = machine::load(machine::kGeForce4);
+  const Result at_once = estimate_sampled(made.trace, made.work, machine, 3);
+  EXPECT_GT(at_once.cycles_plus_minus, 0);
+  std::size_t asked = 0;
+  DrawWork now;
+  std::vector<double> told;
+  const Result beside = estimate_sampled_beside(
+      made.trace,
+      [&](std::size_t draw) -> const DrawWork& {
+        EXPECT_EQ(draw, asked++);
+        return now = made.work[draw];
+      },
+      machine, 3, [&](double fraction) { told.push_back(fraction); });
+  EXPECT_EQ(asked, made.work.size());
+  EXPECT_EQ(told, (std::vector<double>{0, 0.25, 0.5, 0.75}));
+  EXPECT_EQ(beside.cycles, at_once.cycles);
+  EXPECT_EQ(beside.cycles_plus_minus, at_once.cycles_plus_minus);
+  EXPECT_EQ(beside.command_ends, at_once.command_ends);
+  expect_books_to_add_up(beside);
+}
+
+TEST(Sampled, WorkThatDoesNotFitTheTraceIsABug) {
+  RandomTrace made = splats(100, 7);
+  EXPECT_THROW(estimate_sampled(made.trace, {}, Machine{}), ModelError);
+  const WorkSource broken = [](std::size_t) -> const DrawWork& { throw UserError("x", 0, "broken"); };
+  EXPECT_THROW(estimate_sampled_beside(made.trace, broken, Machine{}), UserError);
+  made.work[0].quads.pop_back();
+  EXPECT_THROW(estimate_sampled(made.trace, made.work, Machine{}), ModelError);
+  made.work.push_back(made.work[0]);
+  EXPECT_THROW(estimate_sampled(made.trace, made.work, Machine{}), ModelError);
 }
 
 TEST(ThinDraw, KeepsPartsOfADrawAndKnowsWhatLiesBetween) {
