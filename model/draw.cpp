@@ -28,6 +28,10 @@ constexpr std::size_t kBatchesAThread = 2;
 // turn to be written.
 constexpr std::int64_t kMostPixelsKept = 1 << 18;
 
+// For which a record has room from the start. Most splats cover fewer, and what is not touched takes no
+// memory; records that grow are copied into memory that the system has to clear.
+constexpr std::size_t kQuadsATriangle = 8, kMostTrianglesAhead = 1 << 16;
+
 // Windows of one piece of a triangle in one band.
 struct Band {
   std::size_t piece = 0;
@@ -50,7 +54,14 @@ struct DrawInFlight {
               bindings.draw.state.depth_write} {
     if (record == Record::nothing) return;
     work.samples_only = record == Record::samples;
-    work.triangles.reserve(bindings.draw.index_count / 3);
+    const std::size_t triangles = bindings.draw.index_count / 3;
+    work.triangles.reserve(triangles);
+    if (record == Record::everything) {
+      work.shaded_vertices.reserve(2 * triangles);
+      const std::size_t quads = kQuadsATriangle * std::min(triangles, kMostTrianglesAhead);
+      work.quads.reserve(quads);
+      work.texel_blocks.reserve(quads);
+    }
     if (uses_depth(bindings.draw)) clear_tiles.emplace(target);
   }
 

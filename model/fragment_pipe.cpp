@@ -13,6 +13,9 @@ namespace {
 static_assert(FragmentPipe::kCapacity == pixel::kBatch);
 static_assert(raster::kFragmentStride == pixel::kLaneStride);
 
+// Of a quad's pixels.
+constexpr std::array<std::uint8_t, 16> kBitsSet = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+
 }  // namespace
 
 FragmentPipe::FragmentPipe(const raster::VertexAttributes& vertices, std::uint32_t width,
@@ -58,31 +61,40 @@ void FragmentPipe::push_window(const raster::Piece& piece, const raster::Window&
 
 // The quads, and which of them each fragment that comes next is of.
 void FragmentPipe::note_quads(const raster::Window& window) {
-  std::size_t fragment = count_;
+  std::vector<QuadWork>& all = work_->quads;
+  std::size_t fragment = count_, noted = all.size();
+  all.resize(noted + raster::kWindow * raster::kWindow / 4);  // as many as it can be
   for (std::uint64_t covered = window.covered; covered != 0;) {
     const auto quad = static_cast<unsigned>(std::countr_zero(covered)) / 4;
     const auto covered_here = static_cast<std::uint8_t>(covered >> 4 * quad & 0xfu);
     const auto passed_here = static_cast<std::uint8_t>(window.passed >> 4 * quad & 0xfu);
     covered &= ~(std::uint64_t{0xf} << 4 * quad);
     // Of all four; those that did not pass are overwritten.
-    std::fill_n(quads_.begin() + static_cast<std::ptrdiff_t>(fragment), 4,
-                static_cast<std::uint32_t>(work_->quads.size()));
-    fragment += static_cast<std::size_t>(std::popcount(passed_here));
-    work_->quads.push_back({static_cast<std::uint16_t>(window.x / 2 + raster::Window::x_of(4 * quad) / 2),
-                            static_cast<std::uint16_t>(window.y / 2 + raster::Window::y_of(4 * quad) / 2),
-                            covered_here, passed_here, 0});
+    std::fill_n(quads_.begin() + static_cast<std::ptrdiff_t>(fragment), 4, static_cast<std::uint32_t>(noted));
+    fragment += kBitsSet[passed_here];
+    all[noted++] = {static_cast<std::uint16_t>(window.x / 2 + raster::Window::x_of(4 * quad) / 2),
+                    static_cast<std::uint16_t>(window.y / 2 + raster::Window::y_of(4 * quad) / 2),
+                    covered_here, passed_here, 0};
   }
+  all.resize(noted);
 }
 
 void FragmentPipe::note_blocks(std::span<const std::uint32_t> blocks) {
   std::vector<std::uint32_t>& all = work_->texel_blocks;
+  std::size_t noted = all.size();
+  all.resize(noted + blocks.size());  // as many as it can be
   for (std::size_t i = 0; i < blocks.size();) {
     const std::uint32_t quad = quads_[i];
-    const auto first = static_cast<std::ptrdiff_t>(all.size());
-    for (; i < blocks.size() && quads_[i] == quad; ++i)
-      if (std::find(all.begin() + first, all.end(), blocks[i]) == all.end()) all.push_back(blocks[i]);
-    work_->quads[quad].texel_block_count = static_cast<std::uint8_t>(all.end() - all.begin() - first);
+    const std::size_t first = noted;
+    for (; i < blocks.size() && quads_[i] == quad; ++i) {
+      bool is_known = false;
+      for (std::size_t known = first; known < noted; ++known) is_known |= all[known] == blocks[i];
+      all[noted] = blocks[i];
+      noted += !is_known;
+    }
+    work_->quads[quad].texel_block_count = static_cast<std::uint8_t>(noted - first);
   }
+  all.resize(noted);
 }
 
 // D3DFMT_A8 has no colour: the other components of t0 stay 0.
