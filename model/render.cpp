@@ -36,7 +36,7 @@ std::vector<primitive::UsedAttribute> attributes_of(const isa::Program& program,
   };
   for (const isa::Instruction& instruction : program.instructions) {
     add(instruction.destination.file, instruction.destination.index);
-    for (const isa::Source& source : instruction.sources) add(source.file, source.index);
+    for (const isa::Source& source : instruction.used_sources()) add(source.file, source.index);
   }
   std::vector<primitive::UsedAttribute> used;
   for (const int attribute : attributes) {

@@ -142,8 +142,8 @@ std::string ShaderDebugger::source_text(const isa::Source& source) const {
 // The rows of a matrix are registers of their own.
 std::vector<std::string> ShaderDebugger::sources(const isa::Instruction& instruction) const {
   std::vector<std::string> texts;
-  for (int i = 0; i < instruction.source_count; ++i) {
-    isa::Source source = instruction.sources[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < instruction.source_count; ++i) {
+    isa::Source source = instruction.sources[i];
     const int rows = i == 1 ? std::max(1, isa::matrix_shape(instruction.opcode).rows) : 1;
     for (int row = 0; row < rows; ++row, ++source.index) {
       const std::string text = source_text(source);

@@ -78,8 +78,8 @@ Effects effects_of(const Program& program, const Instruction& instruction) {
     effects.side_effect = true;
     return effects;
   }
-  for (int i = 0; i < instruction.source_count; ++i) {
-    const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < instruction.source_count; ++i) {
+    const Source& source = instruction.sources[i];
     if (source.relative) include(effects.reads, RegisterFile::address, 0, 0x1);
     const auto rows =
         static_cast<std::size_t>(i == 1 ? std::max(1, matrix_shape(instruction.opcode).rows) : 1);
@@ -214,9 +214,8 @@ std::vector<bool> dependent_on(const Program& program, std::uint32_t inputs) {
   std::vector<bool> result;
   for (const Instruction& instruction : program.instructions) {
     const Effects effects = effects_of(program, instruction);
-    const auto end = instruction.sources.begin() + instruction.source_count;
     const bool depends = (effects.reads & dependent).any() ||
-                         std::any_of(instruction.sources.begin(), end, [&](const Source& s) {
+                         std::ranges::any_of(instruction.used_sources(), [&](const Source& s) {
                            return s.file == RegisterFile::input && (inputs >> s.index & 1u) != 0;
                          });
     dependent = depends ? dependent | effects.writes : dependent & ~effects.writes;

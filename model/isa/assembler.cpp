@@ -129,9 +129,9 @@ class Parser {
       instruction.destination.shift = modifiers.shift;
       instruction.destination.saturate = modifiers.saturate;
     }
-    for (int i = 0; i < info.source_count; ++i) {
+    for (std::size_t i = 0; i < info.source_count; ++i) {
       if (i > 0 || info.has_destination) expect_comma();
-      instruction.sources[static_cast<std::size_t>(i)] = parse_source();
+      instruction.sources[i] = parse_source();
     }
     program_.instructions.push_back(instruction);
   }

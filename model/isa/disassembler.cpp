@@ -75,9 +75,9 @@ std::string disassemble(const Program& program, const Instruction& instruction) 
   // No sums of strings: linked as one, GCC 12 takes these for overflows.
   std::string text = fmt::format("{}{}", instruction.coissue ? "+ " : "", mnemonic(instruction, info->name));
   if (info->has_destination) text += fmt::format(" {}", text_of(program, instruction.destination));
-  for (int i = 0; i < instruction.source_count; ++i)
+  for (std::size_t i = 0; i < instruction.source_count; ++i)
     text += fmt::format("{}{}", i > 0 || info->has_destination ? ", " : " ",
-                        text_of(program, instruction.sources[static_cast<std::size_t>(i)]));
+                        text_of(program, instruction.sources[i]));
   return text;
 }
 

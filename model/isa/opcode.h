@@ -20,7 +20,7 @@ struct OpcodeInfo {
   ShaderKind kind;
   int first_minor, last_minor;  // versions 1.first .. 1.last
   bool has_destination;
-  int source_count;
+  std::size_t source_count;
   int slots;
   OpcodeClass unit;
 };

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -124,10 +126,12 @@ struct Instruction {
   Opcode opcode = Opcode::nop;
   Destination destination;
   std::array<Source, 3> sources;
-  int source_count = 0;
+  std::size_t source_count = 0;
   int line = 0;          // of the text (of a token program: of its disassembly), from 1
   int column = 0;        // from 1
   bool coissue = false;  // '+': issued together with the instruction before it
+
+  std::span<const Source> used_sources() const { return std::span(sources).first(source_count); }
 };
 
 // def c#, x, y, z, w

@@ -69,8 +69,7 @@ class TokenReader {
     instruction.coissue = (token & kCoissueBit) != 0;
     instruction.source_count = info->source_count;
     if (info->has_destination) instruction.destination = read_destination();
-    for (int i = 0; i < info->source_count; ++i)
-      instruction.sources[static_cast<std::size_t>(i)] = read_source();
+    for (std::size_t i = 0; i < info->source_count; ++i) instruction.sources[i] = read_source();
     program_.instructions.push_back(instruction);
   }
 

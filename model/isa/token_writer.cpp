@@ -61,8 +61,7 @@ std::vector<std::uint32_t> write_tokens(const Program& program) {
     if (info == nullptr) throw ModelError("an instruction that its version does not have");
     tokens.push_back(info->token | (instruction.coissue ? kCoissueBit : 0u));
     if (info->has_destination) tokens.push_back(token_of(instruction.destination));
-    for (int i = 0; i < instruction.source_count; ++i)
-      tokens.push_back(token_of(instruction.sources[static_cast<std::size_t>(i)]));
+    for (const Source& source : instruction.used_sources()) tokens.push_back(token_of(source));
   }
   tokens.push_back(kEndToken);
   return tokens;

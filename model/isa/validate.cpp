@@ -20,7 +20,7 @@ void reject(const Program& program, const Instruction& at, std::string_view rule
 namespace {
 
 // Of the operand after its swizzle.
-unsigned lanes_read(const Instruction& instruction, int source) {
+unsigned lanes_read(const Instruction& instruction, std::size_t source) {
   const unsigned mask = instruction.destination.mask;
   switch (instruction.opcode) {
     case Opcode::rcp:
@@ -71,9 +71,9 @@ unsigned lanes_read(const Instruction& instruction, int source) {
 
 }  // namespace
 
-unsigned components_read(const Instruction& instruction, int source) {
+unsigned components_read(const Instruction& instruction, std::size_t source) {
   const unsigned lanes = lanes_read(instruction, source);
-  const auto& swizzle = instruction.sources[static_cast<std::size_t>(source)].swizzle;
+  const auto& swizzle = instruction.sources[source].swizzle;
   unsigned components = 0;
   for (unsigned lane = 0; lane < 4; ++lane)
     if (lanes & (1u << lane)) components |= 1u << swizzle[lane];
@@ -90,8 +90,7 @@ bool is_replicated(const Source& source) {
 
 void check_read_ports(const Program& program, const Instruction& instruction, RegisterFile file, int ports) {
   std::vector<std::pair<bool, int>> distinct;  // relative or not, index
-  for (int i = 0; i < instruction.source_count; ++i) {
-    const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+  for (const Source& source : instruction.used_sources()) {
     const std::pair<bool, int> key{source.relative, source.index};
     if (source.file == file && std::ranges::find(distinct, key) == distinct.end()) distinct.push_back(key);
   }

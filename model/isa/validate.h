@@ -10,7 +10,7 @@ namespace splatscope::isa {
 void validate(const Program& program);
 
 // Which components of a source's register an instruction reads (bit 0 = x), after its swizzle.
-unsigned components_read(const Instruction& instruction, int source);
+unsigned components_read(const Instruction& instruction, std::size_t source);
 
 // The same of the register that stands as its destination: texdepth and texkill test it, others read none.
 unsigned destination_components_read(Opcode opcode);

@@ -84,8 +84,7 @@ class PixelValidator {
                         to_string(program_.version), register_name(file, 0), register_name(file, count - 1)));
     };
     if (info.has_destination) check(instruction.destination.file, instruction.destination.index);
-    for (int i = 0; i < instruction.source_count; ++i) {
-      const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+    for (const Source& source : instruction.used_sources()) {
       check(source.file, source.index);
       if (source.relative) reject(program_, instruction, "a pixel program has no relative addresses");
       if (source.negate && source.modifier == SourceModifier::invert)
@@ -104,7 +103,7 @@ class PixelValidator {
       reject(program_, instruction, "a program has at most four dp4 instructions in ps_1_2 and ps_1_3");
     if (instruction.opcode == bem && ++bumps_ > 1)
       reject(program_, instruction, "a program has at most one bem");
-    for (const Source& source : instruction.sources)
+    for (const Source& source : instruction.used_sources())
       if (source.modifier == SourceModifier::dz && ++divisions_ > 2)
         reject(program_, instruction, "a program uses _dz at most twice");
   }
@@ -139,15 +138,14 @@ class PixelValidator {
       reject(program_, instruction, "dp3 writes .rgb or .rgba before ps_1_4");
     if (!version_1_4_ && (destination.shift < -1 || destination.shift > 2))
       reject(program_, instruction, "_x8, _d4 and _d8 need ps_1_4");
-    for (int i = 0; i < instruction.source_count; ++i)
-      check_arithmetic_source(instruction, instruction.sources[static_cast<std::size_t>(i)]);
+    for (const Source& source : instruction.used_sources()) check_arithmetic_source(instruction, source);
     if (instruction.opcode == cnd && !version_1_4_) {
       const Source& condition = instruction.sources[0];
       if (condition != Source{RegisterFile::temporary, 0, kAlpha})
         reject(program_, instruction, "the condition of cnd is r0.a before ps_1_4");
     }
     if (instruction.opcode == cmp && !version_1_4_) {
-      for (const Source& source : instruction.sources)
+      for (const Source& source : instruction.used_sources())
         if (source.file == destination.file && source.index == destination.index)
           reject(program_, instruction, "the destination of cmp cannot be one of its sources before ps_1_4");
     }
@@ -277,8 +275,8 @@ class PixelValidator {
   void check_reads(std::size_t at) const {
     const Instruction& instruction = program_.instructions[at];
     check_not_spent(instruction, instruction.destination);
-    for (int i = 0; i < instruction.source_count; ++i) {
-      const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < instruction.source_count; ++i) {
+      const Source& source = instruction.sources[i];
       const unsigned read = components_read(instruction, i);
       check_not_spent(instruction, source);
       if (source.file == RegisterFile::temporary) {

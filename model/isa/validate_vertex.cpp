@@ -55,7 +55,7 @@ class VertexValidator {
     if (instruction.opcode == Opcode::nop) return;
     check_destination(instruction);
     const Instruction read = as_read(instruction);
-    for (int i = 0; i < read.source_count; ++i) check_source(read, i);
+    for (std::size_t i = 0; i < read.source_count; ++i) check_source(read, i);
     check_read_ports(program_, instruction, RegisterFile::constant, 1);
     check_read_ports(program_, instruction, RegisterFile::input, 1);
     if (is_scalar(instruction.opcode) && !is_replicated(instruction.sources[0]))
@@ -107,8 +107,8 @@ class VertexValidator {
                          register_name(file, 0), register_name(file, count - 1)));
   }
 
-  void check_source(const Instruction& instruction, int number) const {
-    const Source& source = instruction.sources[static_cast<std::size_t>(number)];
+  void check_source(const Instruction& instruction, std::size_t number) const {
+    const Source& source = instruction.sources[number];
     const int rows = number == 1 ? std::max(1, matrix_shape(instruction.opcode).rows) : 1;
     if (source.modifier != SourceModifier::none)
       reject(program_, instruction, "vs_1_1 has no source modifier but negation");
@@ -136,7 +136,7 @@ class VertexValidator {
     }
   }
 
-  bool is_written(const Instruction& instruction, int source, int index) const {
+  bool is_written(const Instruction& instruction, std::size_t source, int index) const {
     return (components_read(instruction, source) & ~written_[static_cast<std::size_t>(index)]) == 0;
   }
 
@@ -147,8 +147,8 @@ class VertexValidator {
     for (int component = 0; component < 4; ++component) {
       destination.mask = static_cast<std::uint8_t>(1 << component);
       bool all = true;
-      for (int i = 0; i < instruction.source_count; ++i) {
-        const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+      for (std::size_t i = 0; i < instruction.source_count; ++i) {
+        const Source& source = instruction.sources[i];
         if (source.file == RegisterFile::temporary && source.index < kVertexTemporaries)
           all = all && is_written(instruction, i, source.index);
       }

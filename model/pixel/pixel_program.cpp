@@ -55,10 +55,9 @@ float scale_of(const isa::Destination& destination) {
 }
 
 bool reads(const isa::Instruction& instruction, const isa::Destination& destination) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
-    if (instruction.sources[i].file == destination.file && instruction.sources[i].index == destination.index)
-      return true;
-  return false;
+  return std::ranges::any_of(instruction.used_sources(), [&](const isa::Source& source) {
+    return source.file == destination.file && source.index == destination.index;
+  });
 }
 
 bool is_texture(isa::Version version, isa::Opcode opcode) {
@@ -149,8 +148,7 @@ void PixelProgram::Decoded::append(const isa::Instruction& instruction, std::siz
   use(instruction.destination.file, instruction.destination.index);
   if (instruction.destination.file == isa::RegisterFile::texture && instruction.opcode != tex)
     textures_written |= 1u << instruction.destination.index;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
-    use(instruction.sources[i].file, instruction.sources[i].index);
+  for (const isa::Source& source : instruction.used_sources()) use(source.file, source.index);
   if (!texture) return;
   writes_depth |= instruction.opcode == texdepth || instruction.opcode == texm3x2depth;
   const bool none =
@@ -249,7 +247,7 @@ std::size_t PixelProgram::Decoded::execute(std::size_t at, Registers& registers,
   for (std::size_t k = 0; k < issued; ++k) {
     const isa::Instruction& instruction = steps[at + k].instruction;
     std::array<Operand, 3> sources{};
-    for (std::size_t i = 0; i < static_cast<std::size_t>(instruction.source_count); ++i)
+    for (std::size_t i = 0; i < instruction.source_count; ++i)
       sources[i] = read(instruction.sources[i], registers, copies[i], context.count);
     const isa::Destination& destination = instruction.destination;
     const bool select_by_alpha = version.minor < 4;  // cnd

@@ -140,7 +140,7 @@ class RandomProgram {
     constant_ = pick(4) ? fmt::format("c{}", pick(8)) : fmt::format("c[a0.x + {}]", pick(8));
     const std::string_view masks[] = {"", ".x", ".yz", ".xw", ".yzw", ".xy"};
     std::string result = fmt::format("{} r{}{}", info->name, pick(6), op == frc ? ".xy" : masks[pick(6)]);
-    for (int i = 0; i < info->source_count; ++i) result += ", " + source(pick(3), scalar);
+    for (std::size_t i = 0; i < info->source_count; ++i) result += ", " + source(pick(3), scalar);
     return result + "\n";
   }
 

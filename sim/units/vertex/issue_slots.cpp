@@ -66,8 +66,8 @@ std::vector<Instruction> expanded(const Instruction& instruction, isa::Version v
 
 ComponentMask reads_of(const Instruction& instruction) {
   ComponentMask reads = 0;
-  for (int i = 0; i < instruction.source_count; ++i) {
-    const Source& source = instruction.sources[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < instruction.source_count; ++i) {
+    const Source& source = instruction.sources[i];
     if (source.relative) reads |= kAddress;
     if (source.file != RegisterFile::temporary) continue;
     reads |= ComponentMask{isa::components_read(instruction, i)} << (4 * source.index);
@@ -101,8 +101,7 @@ bool uses_third_port(Opcode opcode) {
 bool at_most_one(const Instruction& a, const Instruction& b, RegisterFile file) {
   const Source* seen = nullptr;
   for (const Instruction* instruction : {&a, &b}) {
-    for (int i = 0; i < instruction->source_count; ++i) {
-      const Source& source = instruction->sources[static_cast<std::size_t>(i)];
+    for (const Source& source : instruction->used_sources()) {
       if (source.file != file) continue;
       if (seen && (seen->index != source.index || seen->relative != source.relative)) return false;
       seen = &source;
