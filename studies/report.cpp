@@ -83,6 +83,22 @@ std::string picture_figure(const Report::Picture& picture, std::string_view insi
                      picture.image.width, inside, escaped(picture.title), escaped(picture.caption));
 }
 
+// Red, green and blue are the bytes of a count.
+Image bytes_of(const GrayImage& counts) {
+  Image image(counts.width, counts.height);
+  for (std::size_t i = 0; i < counts.pixels.size(); ++i) {
+    const auto count = static_cast<std::uint32_t>(std::min(counts.pixels[i], 0x1p24f - 1));
+    for (std::size_t byte = 0; byte < 3; ++byte)
+      image.pixels[i][byte] = static_cast<float>(count >> 8 * byte & 0xff) / 255;
+  }
+  return image;
+}
+
+std::string counts_attributes(const Report::Counts& counts) {
+  return fmt::format("data-unit=\"{}\" data-counts=\"data:image/png;base64,{}\" ", escaped(counts.unit),
+                     base64(encode_png(bytes_of(*counts.counts))));
+}
+
 std::string image_tag(const Report::Picture& picture, std::string_view attributes = "") {
   return fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{}\" {}src=\"data:image/png;base64,{}\">",
                      picture.image.width, picture.image.height, escaped(picture.title), attributes,
@@ -146,10 +162,11 @@ void Report::add_table(const std::vector<Column>& columns,
 void Report::pictures(const std::vector<Picture>& pictures) {
   body_ += "<div class=\"pictures\">\n";
   for (const Picture& picture : pictures) {
-    body_ +=
-        picture_figure(picture, fmt::format("<button type=\"button\" class=\"magnify\" title=\"magnify\">{}"
-                                            "</button>",
-                                            image_tag(picture)));
+    body_ += picture_figure(
+        picture,
+        fmt::format("<button type=\"button\" class=\"magnify\" title=\"magnify\">{}"
+                    "</button>",
+                    image_tag(picture, picture.counts ? counts_attributes(*picture.counts) : std::string())));
   }
   body_ += "</div>\n";
 }

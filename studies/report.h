@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,10 +38,16 @@ class Report {
   void folded_table(std::string_view summary, const std::vector<Column>& columns,
                     const std::vector<std::vector<std::string>>& rows);
 
+  // What the colours of a picture stand for: a count of each pixel, or of each square of pixels.
+  struct Counts {
+    const GrayImage* counts;  // from 0; what is 2^24 and more is told as that
+    std::string unit;
+  };
   struct Picture {
     std::string title;
     std::string caption;
     const Image& image;
+    std::optional<Counts> counts = {};  // told of a magnified pixel in place of its colours
   };
   // Side by side where the screen is wide enough, pixel for pixel: a scaled picture would hide or add
   // aliasing. Only on a screen narrower than the picture it is scaled. Each opens magnified.

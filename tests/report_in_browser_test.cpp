@@ -18,7 +18,7 @@ addEventListener("unhandledrejection", (event) => errors.push(String(event.reaso
 
 constexpr std::string_view kUseThePage = R"(<script>
 addEventListener("load", async () => {
-  const saw = { comparisons: 0, zooms: 0 };
+  const saw = { comparisons: 0, zooms: 0, pixels: [] };
   const clock = setInterval(() => {}, 1);  // or virtual time runs out while a picture is being decoded
   for (const image of document.images) image.closest("details")?.setAttribute("open", "");
   const images = [...document.images].filter((image) => image.hasAttribute("src"));
@@ -48,6 +48,7 @@ addEventListener("load", async () => {
     dialog.querySelector("[data-step='1']").click();
     const box = shown.getBoundingClientRect();
     shown.dispatchEvent(new PointerEvent("pointermove", { clientX: box.left + 1, clientY: box.top + 1 }));
+    saw.pixels.push(dialog.querySelector(".pixel").textContent);
     saw.zooms += dialog.open && width >= shown.naturalWidth && box.width > width &&
                  dialog.querySelector(".pixel").textContent.startsWith("pixel 0,0: ");
     dialog.querySelector("[data-close]").click();
@@ -88,7 +89,8 @@ nlohmann::json saw_of(const std::string& page, int width) {
   return nlohmann::json::parse(text);
 }
 
-void expect_usable(const std::string& page, int images, int comparisons, int zooms) {
+// `pixel`: what the last picture says of its first one.
+void expect_usable(const std::string& page, int images, int comparisons, int zooms, std::string_view pixel) {
   for (const int width : {1280, 360}) {
     nlohmann::json saw;
     for (int tries = 0; tries < 5 && saw.is_null(); ++tries) saw = saw_of(page, width);
@@ -100,6 +102,7 @@ void expect_usable(const std::string& page, int images, int comparisons, int zoo
     EXPECT_EQ(0, saw.at("not_loaded"));
     EXPECT_EQ(comparisons, saw.at("comparisons"));
     EXPECT_EQ(zooms, saw.at("zooms"));
+    EXPECT_EQ(pixel, saw.at("pixels").back());
     EXPECT_EQ(nlohmann::json::array(), saw.at("loaded")) << "nothing is loaded";
   }
 }
@@ -116,7 +119,10 @@ TEST(ReportInBrowser, EveryPartOfAPageWorks) {
   report.pictures({{"one", "a picture", image}, {"two", "", image}});
   report.comparisons({{{"three", "", image}, image, image}, {{"four", "", image}, image, image}});
   report.drawing("A drawing", "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"40\"/>");
-  expect_usable(report.html(), 9, 2, 4);
+  studies::GrayImage counts{300, 20, std::vector<float>(300 * 20, 7)};
+  counts.pixels[0] = 70000;
+  report.pictures({{"five", "", image, studies::Report::Counts{&counts, "fragments"}}});
+  expect_usable(report.html(), 10, 2, 5, "pixel 0,0: 70000 fragments");
 }
 
 TEST(ReportInBrowser, APageThatRunWroteWorks) {
@@ -127,7 +133,7 @@ TEST(ReportInBrowser, APageThatRunWroteWorks) {
       "camera = { eye = [0, 14, -20], target = [0, 0, 0] }\n");
   ASSERT_EQ(0, run_program({"run", "small.toml", "--reference", "--out", "out"}, folder.path()).status);
   const std::string page = text_of(folder.path() / "out" / "report.html");
-  expect_usable(page, 4, 1, 1);
+  expect_usable(page, 4, 1, 1, "pixel 0,0: 0 0 0");
   for (const char* part :
        {"Roofline", "vertex0: busy ", "raster to depth: ", "vertex.units", "fragments_passed"})
     EXPECT_NE(std::string::npos, page.find(part)) << part;

@@ -11,7 +11,7 @@
   document.body.append(dialog);
   const view = dialog.querySelector(".zoom-view"), shown = view.querySelector("img");
   const pixel = dialog.querySelector(".pixel");
-  let place = 1, texels = null;
+  let place = 1, texels = null, counts = null, unit = "";
 
   // Keeps what is in the middle of the view there.
   function magnify(step) {
@@ -24,21 +24,37 @@
     view.scrollTo(x - view.clientWidth / 2, y - view.clientHeight / 2);
   }
 
+  function texels_of(image) {
+    const canvas = document.createElement("canvas");
+    canvas.width = image.naturalWidth;
+    canvas.height = image.naturalHeight;
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    return context.getImageData(0, 0, canvas.width, canvas.height);
+  }
+
   function open(image) {
     shown.src = image.src;
     shown.alt = image.alt;
     pixel.textContent = "";
-    texels = null;
+    texels = counts = null;
+    unit = image.dataset.unit;
     dialog.showModal();
-    shown.decode().then(() => {
-      const canvas = document.createElement("canvas");
-      canvas.width = shown.naturalWidth;
-      canvas.height = shown.naturalHeight;
-      const context = canvas.getContext("2d");
-      context.drawImage(shown, 0, 0);
-      texels = context.getImageData(0, 0, canvas.width, canvas.height);
+    const numbers = new Image();
+    numbers.src = image.dataset.counts ?? image.src;
+    Promise.all([shown.decode(), numbers.decode()]).then(() => {
+      texels = texels_of(shown);
+      if (unit) counts = texels_of(numbers);
       magnify(0);
     }).catch(() => {});  // another one has taken its place
+  }
+
+  // Of the square of pixels that it is in.
+  function count_at(x, y) {
+    const square = texels.width / counts.width;
+    const [r, g, b] = counts.data.slice(4 * (Math.floor(y / square) * counts.width + Math.floor(x / square)));
+    const count = r + 256 * g + 65536 * b;
+    return `${count}${count === 0xffffff ? " or more" : ""} ${unit}`;
   }
 
   shown.addEventListener("pointermove", (event) => {
@@ -46,7 +62,7 @@
     const x = Math.floor(event.offsetX / scales[place]), y = Math.floor(event.offsetY / scales[place]);
     if (x < 0 || y < 0 || x >= texels.width || y >= texels.height) return;
     const [r, g, b] = texels.data.slice(4 * (y * texels.width + x));
-    pixel.textContent = `pixel ${x},${y}: ${r} ${g} ${b}`;
+    pixel.textContent = `pixel ${x},${y}: ${counts ? count_at(x, y) : `${r} ${g} ${b}`}`;
   });
   dialog.addEventListener("click", (event) => {
     if (event.target.dataset.step) magnify(Number(event.target.dataset.step));

@@ -111,7 +111,7 @@ void add_heat_maps(Report& report, const std::vector<HeatMap>& maps) {
     pictures.push_back({map.name,
                         fmt::format("{}: {} {}, at most {:.0f}; black is 0, colours go by its logarithm",
                                     map.what, grouped(map.sum), map.unit, most),
-                        images.back()});
+                        images.back(), Report::Counts{&map.image, map.unit}});
   }
   report.pictures(pictures);
 }
