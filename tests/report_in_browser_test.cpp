@@ -134,8 +134,8 @@ TEST(ReportInBrowser, APageThatRunWroteWorks) {
   ASSERT_EQ(0, run_program({"run", "small.toml", "--reference", "--out", "out"}, folder.path()).status);
   const std::string page = text_of(folder.path() / "out" / "report.html");
   expect_usable(page, 4, 1, 1, "pixel 0,0: 0 0 0");
-  for (const char* part :
-       {"Roofline", "vertex0: busy ", "raster to depth: ", "vertex.units", "fragments_passed"})
+  for (const char* part : {"Roofline", "vertex0: busy ", "raster to depth: ", "vertex.units",
+                           "fragments_passed", "<td>splat_ewa.vs</td><td class=\"number\">78</td>"})
     EXPECT_NE(std::string::npos, page.find(part)) << part;
 }
 

@@ -86,6 +86,11 @@ void add_roofline(Report& report, const Machine& machine, const sim::Result& tim
 
 void add_counts(Report& report, const Json& results) {
   report.heading("Counts");
+  std::vector<std::vector<std::string>> programs;
+  for (const Json& program : results.at("programs"))
+    programs.push_back({program.at("name"), grouped(program.at("slots").get<std::uint64_t>())});
+  report.table("The programs, and the instruction slots that each takes.", {{"program"}, {"slots", number}},
+               programs);
   const std::vector<Report::Column> columns = {
       {"of"}, {"what", prose}, {"name"}, {"value", number}, {"unit"}};
   std::vector<std::vector<std::string>> rows;
