@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
@@ -69,9 +70,11 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
   refuse_dash(path_);
   if (path_.filename().empty())
     throw UserError(fmt::format("\"{}\"", path_.string()), 0, "names no file, expected a place for one");
-  if (fs::is_directory(path_, error))
-    throw UserError(path_.string(), 0, "is a folder, expected a place for a file");
-  if (fs::exists(path_, error) && !fs::is_regular_file(path_, error))  // /dev/null must stay what it is
+  const fs::file_status there = fs::status(path_, error);
+  if (error == std::errc::filename_too_long)
+    throw UserError(path_.string(), 0, "is too long a name, expected a shorter one");
+  if (fs::is_directory(there)) throw UserError(path_.string(), 0, "is a folder, expected a place for a file");
+  if (fs::exists(there) && !fs::is_regular_file(there))  // /dev/null must stay what it is
     throw UserError(path_.string(), 0, "is no ordinary file, expected a place for one");
   if (is_standard_stream(path_))
     throw UserError(path_.string(), 0,
@@ -83,8 +86,8 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
     path_ = place;
   }
   // The process's number keeps two runs apart that write to the same place; the last one to finish wins.
-  temporary_ = path_.parent_path() /
-               fmt::format(".{}.{}{}", path_.stem().string(), ::getpid(), path_.extension().string());
+  static std::atomic<unsigned> files = 0;
+  temporary_ = path_.parent_path() / fmt::format(".unfinished.{}.{}", ::getpid(), ++files);
   errno = 0;
   if (std::ofstream(temporary_, std::ios::binary)) return;
   if (errno == ENOSPC || errno == EDQUOT) fail_for_disk(path_);

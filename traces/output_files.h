@@ -20,7 +20,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Write here: same folder and ending as `path`.
+  // Write here: in the folder of `path`.
   const std::filesystem::path& temporary() const { return temporary_; }
   void commit();
 

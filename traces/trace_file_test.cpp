@@ -317,6 +317,16 @@ TEST(OutputFile, LeavesNothingWithoutCommit) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
+// As long as the system lets it be: the temporary one is no longer.
+TEST(OutputFile, HasANameOfAnyLength) {
+  const ScratchFolder folder;
+  write_file(folder / std::string(255, 'n'), "long");
+  EXPECT_EQ("long", text_of(folder / std::string(255, 'n')));
+  EXPECT_THAT(error_of([&] { write_file(folder / std::string(256, 'n'), "longer"); }),
+              HasSubstr("nn: is too long a name, expected a shorter one"));
+  EXPECT_EQ(1u, folder.names().size());
+}
+
 TEST(OutputFile, GoesWhereALinkPoints) {
   const ScratchFolder folder;
   write_file(folder / "a.txt", "there");
