@@ -102,7 +102,7 @@ void expect_usable(const std::string& page, int images, int comparisons, int zoo
     EXPECT_EQ(0, saw.at("not_loaded"));
     EXPECT_EQ(comparisons, saw.at("comparisons"));
     EXPECT_EQ(zooms, saw.at("zooms"));
-    EXPECT_EQ(pixel, saw.at("pixels").back());
+    EXPECT_EQ(pixel, saw.at("pixels").back().get<std::string>());
     EXPECT_EQ(nlohmann::json::array(), saw.at("loaded")) << "nothing is loaded";
   }
 }
