@@ -108,11 +108,11 @@ constexpr SplatProgram kVisibility[] = {
 constexpr SplatProgram kEwa[] = {
     {"paper", kEwaProgram, "the paper's: eigenvalues of M by Appendix A", kPaperVertex, splat_constants},
     {"normal", kNormalProgram, "the same factor as plane, from the least bytes", kNormalVertex,
-     plane_constants, true},
+     plane_constants, true, true},
     {"plane", kPlaneProgram, "Cholesky factor on the screen, the surfel's plane by its normal", kPlaneVertex,
-     plane_constants, true},
+     plane_constants, true, true},
     {"facing", kFacingProgram, "the same for surfels that face the eye; the others vanish", kPlaneVertex,
-     plane_constants, true}};
+     plane_constants, true, true}};
 
 constexpr SplatProgram kPlain = {"plain", kPlainProgram, "the reconstruction filter alone", kPaperVertex,
                                  splat_constants};

@@ -45,6 +45,8 @@ struct SplatProgram {
   // Its corners lie as the axes of the screen do, x to the right and y up, and not as s and t: corner i is to
   // have the weight of the corner of o +- s +- t that lies there.
   bool screen_corners = false;
+  // It adds something of the size of 1 to -1/near: the depth is as exact as floats where near is below 2.
+  bool near_in_sums = false;
 };
 
 std::span<const SplatProgram> visibility_programs();  // first pass

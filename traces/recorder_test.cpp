@@ -308,6 +308,28 @@ TEST(Recorder, DrawsFromAfarByEveryProgram) {
 }
 
 // A surfel is too large by its pixels, not by what the near plane would make of it.
+// A scene in another unit of length is the same picture, also where the programs of fewer slots would lose
+// the depth in what floats lose of 1 - 1/near. The paper's needs no unit of its own.
+TEST(Recorder, TheUnitOfLengthChangesNothing) {
+  const auto picture_in = [](double unit, const kernels::SplatProgram& program) {
+    Scene scene = small_plane(Algorithm::ewa_per_pixel);
+    scene.splatting.ewa_program = program.name;
+    scene.splatting.depth_offset *= unit;
+    for (Surfel& surfel : scene.surfels) {
+      surfel.position *= static_cast<float>(unit);
+      surfel.radius *= static_cast<float>(unit);
+    }
+    for (double* length : {&scene.camera.near, &scene.camera.far}) *length *= unit;
+    for (glm::dvec3* place : {&scene.camera.eye, &scene.camera.target}) *place *= unit;
+    return render(record(scene, NumberFormats{}).trace, {}).frame;
+  };
+  for (const kernels::SplatProgram& program : kernels::ewa_programs()) {
+    SCOPED_TRACE(program.name);
+    const splatscope::Frame frame = picture_in(1, program);
+    for (const double unit : {0x1p10, 0x1p20, 0x1p40}) EXPECT_EQ(frame, picture_in(unit, program)) << unit;
+  }
+}
+
 TEST(Recorder, ANearPlaneNextToTheEyeMakesNoSurfelSmaller) {
   Scene scene = parse_scene(
       "[surfels]\ncolumns = 32\nrows = 32\n[camera]\neye = [0, 100, 100]\ntarget = [0, 0, 0]\n"

@@ -72,7 +72,8 @@ Buffer quad_indices(std::size_t quads);
 // visibility and splats of its ranges, in their order. The frame that refines the last one has vertices of
 // its own, as the weights lie in the vertices: those of ewa-per-pixel. Four vertices a surfel, six 16-bit
 // indices a surfel shared by all draws. Buffers lie where `settings.vertex_memory` says: `automatic` puts
-// them into video memory in turn until `settings.video_megabytes` are full.
+// them into video memory in turn until `settings.video_megabytes` are full. Lengths are those of object space,
+// or a power of two times them where the program needs it (`SplatProgram::near_in_sums`).
 Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::vector<DrawnRange>> frames,
                   const kernels::View& view, const Splatting& settings, const SplatPass& pass);
 
@@ -80,7 +81,8 @@ Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::ve
 Trace splat_trace(const SurfelBuffer& surfels, const kernels::View& view, const Splatting& settings,
                   const SplatPass& pass);
 
-// The commands of a splat trace as they are for another view of the same size.
+// The commands of a splat trace as they are for another view of the same size. Not where the trace has a unit
+// of length of its own.
 std::vector<Command> seen_from(const kernels::View& view, const Splatting& settings, const Trace& trace);
 
 }  // namespace splatscope::traces
