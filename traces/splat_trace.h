@@ -72,8 +72,8 @@ Buffer quad_indices(std::size_t quads);
 // visibility and splats of its ranges, in their order. The frame that refines the last one has vertices of
 // its own, as the weights lie in the vertices: those of ewa-per-pixel. Four vertices a surfel, six 16-bit
 // indices a surfel shared by all draws. Buffers lie where `settings.vertex_memory` says: `automatic` puts
-// them into video memory in turn until `settings.video_megabytes` are full. Lengths are those of object space,
-// or a power of two times them where the program needs it (`SplatProgram::near_in_sums`).
+// them into video memory in turn until `settings.video_megabytes` are full. Lengths are those of object
+// space, or a power of two times them where the program needs it (`SplatProgram::near_in_sums`).
 Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::vector<DrawnRange>> frames,
                   const kernels::View& view, const Splatting& settings, const SplatPass& pass);
 

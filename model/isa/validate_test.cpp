@@ -150,6 +150,44 @@ TEST(Validate, RowsOfARelativeMatrixMayReachPastTheLastConstant) {
   EXPECT_EQ(error_of("vs_1_1\nm4x4 oPos, v0, c93\n"), "p:2:1: c96 does not exist, expected c0 to c95");
 }
 
+TEST(Validate, EveryRuleIsNamedWithItsPlace) {
+  const struct {
+    const char *program, *error;
+  } cases[] = {
+      {"vs_1_1\ndcl_position r0\nmov oPos, v0\n", "p:2:14: dcl declares an input, expected v#"},
+      {"ps_1_1\nmul_x3 r0, v0, v1\n",
+       "p:2:1: '_x3' is not a modifier here, expected one of _x2 _x4 _x8 _d2 _d4 _d8, then _sat"},
+      {"ps_1_4\nmov r0, -t0_dz\n", "p:2:10: '_dz' cannot be combined with negation"},
+      {"vs_1_1\nadd a0.x, v0.x, v0.x\nmov oPos, v0\n", "p:2:1: only mov writes the address register"},
+      {"vs_1_1\nm4x4 oPos, c0, c0\n",
+       "p:2:1: this macro reads two different registers of one file with one read port"},
+      {"vs_1_1\nm4x4 oPos, v0, v0\n",
+       "p:2:1: this macro reads two different registers of one file with one read port"},
+      {"ps_1_1\ntex t0\ntexm3x2pad t1, t0\nmov r0, v0\n",
+       "p:4:1: a texm3x2pad or texm3x3pad lacks its last row"},
+      {"ps_1_4\ntexcrd r0.rgb, t0\ntexcrd r1.rgb, t1\ntexcrd r2.rgb, t2\nphase\ntexld r3, r0_dz\ntexld r4, "
+       "r1_dz\ntexld r5, r2_dz\nmov r0, r3\n",
+       "p:8:1: a program uses _dz at most twice"},
+      {"ps_1_1\ntex t0\ntexreg2ar t1, t1\nmov r0, t1\n",
+       "p:3:1: the source of a texture address instruction is of an earlier stage than its destination"},
+      {"ps_1_1\ntex t0\ntexm3x3pad t1, t0\ntexm3x3pad t2, t0\ntexm3x3spec t3, t0, v0\nmov r0, t3\n",
+       "p:5:1: the eye ray of texm3x3spec is a constant c# without modifiers"},
+      {"ps_1_1\nmov r0.rgb, v0\n+ dp3 r0.a, v0, v1\n",
+       "p:3:3: dp3 runs in the colour pipe: it cannot be the alpha half of a pair"},
+      {"vs_1_1\ndef c96, 0, 0, 0, 0\nmov oPos, v0\n", "p:2:1: c96 does not exist, expected c0 to c95"},
+      {"vs_1_1\nmov r0, v0\nm4x4 r0, r0, c0\nmov oPos, r0\n",
+       "p:3:1: the destination of a macro cannot be one of its sources"},
+      {"ps_1_1\ndcl_position v0\nmov r0, v0\n", "p:2:1: dcl is of vertex programs"},
+      {"ps_1_4\ntexld r2, t0\nbem r0.rg, c0, r2\nbem r1.rg, c0, r2\nphase\nmov r0, v0\n",
+       "p:4:1: a program has at most one bem"},
+      {"ps_1_1\nmov r0, v0\ndp3 r0.a, v0, v1\n", "p:3:1: dp3 writes .rgb or .rgba before ps_1_4"},
+      {"ps_1_4\ntexcrd r5.rgb, t0\ntexdepth r5\nphase\nmov r0, v0\n",
+       "p:3:1: texdepth takes r5, in the second phase"},
+      {"ps_1_1\ntex t0\nmov r0.rgb, v0\n+ mov_x8 r0.a, v0\n", "p:4:3: _x8, _d4 and _d8 need ps_1_4"},
+  };
+  for (const auto& [program, error] : cases) EXPECT_EQ(error_of(program), error) << program;
+}
+
 // Text and tokens break the same rules; the tokens' places are lines of their disassembly.
 TEST(Validate, TokensAreCheckedLikeText) {
   const json vectors = oracle("invalid_programs.json");

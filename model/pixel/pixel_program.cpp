@@ -212,7 +212,6 @@ PixelProgram::PixelProgram(const isa::Program& program, CombinerFormat format)
 
 PixelProgram::~PixelProgram() = default;
 PixelProgram::PixelProgram(PixelProgram&&) noexcept = default;
-PixelProgram& PixelProgram::operator=(PixelProgram&&) noexcept = default;
 
 unsigned PixelProgram::texture_stages() const {
   return decoded_->stages;

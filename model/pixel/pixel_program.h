@@ -56,7 +56,6 @@ class PixelProgram {
   explicit PixelProgram(const isa::Program& program, CombinerFormat format = CombinerFormat::float32);
   ~PixelProgram();
   PixelProgram(PixelProgram&&) noexcept;
-  PixelProgram& operator=(PixelProgram&&) noexcept;
 
   unsigned texture_stages() const;  // bit n: stage n is sampled
   bool writes_depth() const;

@@ -308,7 +308,6 @@ std::vector<VertexState> VertexProgram::trace(std::span<const Vec4> constants, c
 
 VertexProgram::~VertexProgram() = default;
 VertexProgram::VertexProgram(VertexProgram&&) noexcept = default;
-VertexProgram& VertexProgram::operator=(VertexProgram&&) noexcept = default;
 
 unsigned VertexProgram::inputs_read() const {
   unsigned read = 0;
@@ -353,8 +352,6 @@ struct VertexProgram::Bound::State {
 VertexProgram::Bound::Bound(const VertexProgram& program, std::span<const Vec4> constants)
     : state_(std::make_unique<State>(program, constants)) {}
 VertexProgram::Bound::~Bound() = default;
-VertexProgram::Bound::Bound(Bound&&) noexcept = default;
-VertexProgram::Bound& VertexProgram::Bound::operator=(Bound&&) noexcept = default;
 
 InputBatch& VertexProgram::Bound::input() {
   return state_->in;

@@ -57,7 +57,6 @@ class VertexProgram {
   VertexProgram(const isa::Program& program, Arithmetic arithmetic, int reciprocal_bits = 24);
   ~VertexProgram();
   VertexProgram(VertexProgram&&) noexcept;
-  VertexProgram& operator=(VertexProgram&&) noexcept;
 
   unsigned inputs_read() const;  // bit n: v<n>
 
@@ -70,8 +69,6 @@ class VertexProgram {
    public:
     Bound(const VertexProgram& program, std::span<const Vec4> constants);
     ~Bound();
-    Bound(Bound&&) noexcept;
-    Bound& operator=(Bound&&) noexcept;
 
     // What the program reads is to be filled in, up to whole SIMD registers of lanes.
     InputBatch& input();
