@@ -24,8 +24,8 @@ if(SPLATSCOPE_COVERAGE)
   # Threads count together; without inlining a line is counted where it stands.
   target_compile_options(splatscope_options INTERFACE --coverage -fprofile-update=atomic -O1 -fno-inline)
   # Highway includes files once more by the links of splatscope_headers: lines count where they are.
-  file(RELATIVE_PATH up ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR}/model)
-  target_compile_options(splatscope_options INTERFACE -fprofile-prefix-map=include/model/model/=${up}/)
+  target_compile_options(splatscope_options INTERFACE
+                         -fprofile-prefix-map=${CMAKE_BINARY_DIR}/include/model/model/=${CMAKE_SOURCE_DIR}/model/)
   target_link_options(splatscope_options INTERFACE --coverage)
 endif()
 
