@@ -13,7 +13,7 @@ namespace {
 static_assert(FragmentPipe::kCapacity == pixel::kBatch);
 static_assert(raster::kFragmentStride == pixel::kLaneStride);
 
-// Pixels of a quad by its mask.
+// Pixels of a quad by its mask: std::popcount is a call where no processor's instruction may be assumed.
 constexpr std::array<std::uint8_t, 16> kBitsSet = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 
 }  // namespace

@@ -176,10 +176,16 @@ void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice) {
   if (!work.samples_only) count_items(job);  // the units do; an estimate does not look at these
 }
 
+void expect_work_of_each_draw(const Trace& trace, std::span<const DrawWork> work) {
+  const auto is_draw = [](const Command& command) { return std::holds_alternative<Draw>(command); };
+  if (static_cast<std::size_t>(std::ranges::count_if(trace.commands, is_draw)) != work.size())
+    throw ModelError("there are not as many work records as draws");
+}
+
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                             const MemoryLayout& layout) {
+  expect_work_of_each_draw(trace, work);
   PreparedDraws prepared = prepare_draws(trace, machine, layout);
-  if (prepared.jobs.size() != work.size()) throw ModelError("there are not as many work records as draws");
   for (std::size_t i = 0; i < work.size(); ++i) give_work(prepared.jobs[i], work[i]);
   return prepared;
 }

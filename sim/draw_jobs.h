@@ -54,6 +54,8 @@ struct PreparedDraws {
 PreparedDraws prepare_draws(const Trace& trace, const Machine& machine, const MemoryLayout& layout);
 // Gives a draw its work. ModelError where they do not fit together. `samples_suffice`: for an estimate.
 void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice = false);
+// ModelError where there are more records, or fewer, than draws.
+void expect_work_of_each_draw(const Trace& trace, std::span<const DrawWork> work);
 // Both, for all draws.
 PreparedDraws prepare_draws(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                             const MemoryLayout& layout);

@@ -27,6 +27,11 @@ kernels::View in_unit(kernels::View view, double unit) {
   return view;
 }
 
+// Of the second pass.
+const kernels::SplatProgram& splat_program(const Splatting& settings, const SplatPass& pass) {
+  return pass.prefilter ? kernels::ewa_program(settings.ewa_program) : kernels::plain_program();
+}
+
 // Of a surfel, in pixels at its centre, or at the near plane before it: larger ones are drawn of this size,
 // which covers any frame as well. Fourth powers of it appear in the EWA program, and must be finite floats.
 constexpr double kLargestRadius = 1e9;
@@ -61,9 +66,8 @@ std::array<std::size_t, kQuadVertices> corner_places(const kernels::SplatProgram
           (first + 3 * step) % kQuadVertices};
 }
 
-// `view` is in the unit already, the surfels are not.
 Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& from,
-                     const kernels::View& view, double unit, const Splatting& settings) {
+                     const kernels::View& view, const Splatting& settings) {
   const std::span surfels = from.surfels;
   const std::span weights = from.weights;
   Buffer buffer;
@@ -73,12 +77,10 @@ Buffer vertex_buffer(const kernels::SplatProgram& program, const SurfelBuffer& f
   const double camera_scale = glm::length(glm::dvec3(view.object_to_camera[0]));
   for (std::size_t k = 0; k < surfels.size(); ++k) {
     Surfel drawn = surfels[k];
-    drawn.position *= static_cast<float>(unit);
-    drawn.radius *= static_cast<float>(unit);
     drawn.radius = std::min(drawn.radius, largest_radius(view, camera_scale, glm::dvec3(drawn.position)));
     const Tangents axes = tangents(drawn);
-    kernels::Surfel surfel{glm::dvec3(drawn.position), axes.s, axes.t, settings.sigma, 0,
-                           glm::dvec3(drawn.color)};
+    kernels::Surfel surfel{glm::dvec3(surfels[k].position), axes.s, axes.t, settings.sigma, 0,
+                           glm::dvec3(surfels[k].color)};
     const std::array<std::size_t, kQuadVertices> places = corner_places(program, view, surfel);
     for (std::size_t i = 0; i < kQuadVertices; ++i) {
       surfel.weight = weights[k][i];
@@ -122,10 +124,9 @@ struct RecordedPass {
   Draw draw;
   std::vector<std::uint32_t> vertex_buffers;
 
-  void append(const DrawnRange& range, const kernels::View& view, double unit, const Splatting& settings,
-              Trace& trace) {
+  void append(const DrawnRange& range, const kernels::View& view, const Splatting& settings, Trace& trace) {
     draw.vertex_buffer = vertex_buffers[range.buffer];
-    draw.constants = constants_of(program, view, settings, unit * range.depth_offset);
+    draw.constants = constants_of(program, view, settings, range.depth_offset);
     draw.base_vertex = range.first * kQuadVertices;
     draw.index_count = range.count * kQuadIndices;
     trace.commands.emplace_back(draw);
@@ -143,15 +144,15 @@ RecordedPass make_pass(const kernels::SplatProgram& program, std::uint32_t verte
 }
 
 // Fills the trace's buffers. Passes with the same vertices share them.
-void add_buffers(std::span<const SurfelBuffer> buffers, const kernels::View& view, double unit,
-                 const Splatting& settings, RecordedPass& visibility, RecordedPass& splats, Trace& trace) {
+void add_buffers(std::span<const SurfelBuffer> buffers, const kernels::View& view, const Splatting& settings,
+                 RecordedPass& visibility, RecordedPass& splats, Trace& trace) {
   std::size_t most = 0;
   for (const SurfelBuffer& buffer : buffers) most = std::max(most, buffer.surfels.size());
   trace.buffers.push_back(quad_indices(std::min(most, kSurfelsADraw)));
   const bool shared = std::ranges::equal(splats.program.fields, visibility.program.fields);
   const auto add = [&](RecordedPass& pass, const SurfelBuffer& buffer) {
     pass.vertex_buffers.push_back(static_cast<std::uint32_t>(trace.buffers.size()));
-    trace.buffers.push_back(vertex_buffer(pass.program, buffer, view, unit, settings));
+    trace.buffers.push_back(vertex_buffer(pass.program, buffer, view, settings));
   };
   for (const SurfelBuffer& buffer : buffers) {
     add(visibility, buffer);
@@ -162,7 +163,7 @@ void add_buffers(std::span<const SurfelBuffer> buffers, const kernels::View& vie
 
 // The splats of the frame that refines one of `ranges`, of which only the buffers are needed.
 RecordedPass add_still_pass(const RecordedPass& splats, std::span<const SurfelBuffer> buffers,
-                            std::span<const DrawnRange> ranges, const kernels::View& view, double unit,
+                            std::span<const DrawnRange> ranges, const kernels::View& view,
                             const Splatting& settings, Trace& trace) {
   RecordedPass still = splats;
   still.draw.pixel_program = static_cast<std::uint32_t>(trace.programs.size());
@@ -173,9 +174,54 @@ RecordedPass add_still_pass(const RecordedPass& splats, std::span<const SurfelBu
     const std::span<const Surfel> surfels = buffers[i].surfels;
     const std::vector<VertexWeights> weights(surfels.size(), equal_weights(buffers[i].still_weight));
     still.vertex_buffers[i] = static_cast<std::uint32_t>(trace.buffers.size());
-    trace.buffers.push_back(vertex_buffer(still.program, {surfels, weights}, view, unit, settings));
+    trace.buffers.push_back(vertex_buffer(still.program, {surfels, weights}, view, settings));
   }
   return still;
+}
+
+Trace trace_of(std::span<const SurfelBuffer> buffers, std::span<const std::vector<DrawnRange>> frames,
+               const kernels::View& view, const Splatting& settings, const SplatPass& pass) {
+  Trace trace;
+  trace.width = static_cast<std::uint32_t>(view.width);
+  trace.height = static_cast<std::uint32_t>(view.height);
+  if (std::ranges::all_of(buffers, [](const SurfelBuffer& buffer) { return buffer.surfels.empty(); })) {
+    trace.commands.emplace_back(Clear{});
+    return trace;
+  }
+
+  RecordedPass visibility = make_pass(kernels::visibility_program(settings.visibility_program), 0, settings);
+  visibility.draw.state.color_write = false;
+
+  RecordedPass splats = make_pass(splat_program(settings, pass), 1, settings);
+  splats.draw.pixel_program = 2;
+  splats.draw.texture = 0;
+  DrawState& state = splats.draw.state;
+  state.depth_write = false;
+  state.blend = true;
+  state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
+  state.destination_factor = BlendFactor::one;
+
+  add_buffers(buffers, view, settings, visibility, splats, trace);
+  const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
+  trace.textures.push_back(kernels::alpha_texture(settings.cutoff, texture_length(settings), shape));
+  trace.programs = {kernels::shader_text(visibility.program.file), kernels::shader_text(splats.program.file),
+                    kernels::shader_text(pass.sum_weights ? kernels::kWeightedSplatPixelProgram
+                                                          : kernels::kSplatPixelProgram)};
+
+  const auto add_frame = [&](const std::vector<DrawnRange>& ranges, RecordedPass& second, bool normalize) {
+    if (!trace.commands.empty()) trace.commands.emplace_back(Present{});
+    trace.commands.emplace_back(Clear{});
+    for (RecordedPass* recorded : {&visibility, &second})
+      for (const DrawnRange& range : ranges) recorded->append(range, view, settings, trace);
+    if (normalize) trace.commands.emplace_back(NormalizeOnHost{});
+  };
+  for (const std::vector<DrawnRange>& ranges : frames) add_frame(ranges, splats, pass.normalize_on_host);
+  if (pass.refine) {
+    RecordedPass still = add_still_pass(splats, buffers, frames.back(), view, settings, trace);
+    add_frame(frames.back(), still, true);
+  }
+  place_buffers(settings, trace.buffers);
+  return trace;
 }
 
 }  // namespace
@@ -223,51 +269,22 @@ int texture_length(const Splatting& settings) {
 }
 
 Trace splat_trace(std::span<const SurfelBuffer> buffers, std::span<const std::vector<DrawnRange>> frames,
-                  const kernels::View& seen, const Splatting& settings, const SplatPass& pass) {
-  Trace trace;
-  trace.width = static_cast<std::uint32_t>(seen.width);
-  trace.height = static_cast<std::uint32_t>(seen.height);
-  if (std::ranges::all_of(buffers, [](const SurfelBuffer& buffer) { return buffer.surfels.empty(); })) {
-    trace.commands.emplace_back(Clear{});
-    return trace;
+                  const kernels::View& view, const Splatting& settings, const SplatPass& pass) {
+  const double unit = unit_of(splat_program(settings, pass), view);
+  if (unit == 1) return trace_of(buffers, frames, view, settings, pass);
+  std::vector<std::vector<Surfel>> surfels;
+  std::vector<SurfelBuffer> buffers_in_unit(buffers.begin(), buffers.end());
+  for (SurfelBuffer& buffer : buffers_in_unit) {
+    for (Surfel& surfel : surfels.emplace_back(buffer.surfels.begin(), buffer.surfels.end())) {
+      surfel.position *= static_cast<float>(unit);
+      surfel.radius *= static_cast<float>(unit);
+    }
+    buffer.surfels = surfels.back();
   }
-
-  RecordedPass visibility = make_pass(kernels::visibility_program(settings.visibility_program), 0, settings);
-  visibility.draw.state.color_write = false;
-
-  RecordedPass splats = make_pass(
-      pass.prefilter ? kernels::ewa_program(settings.ewa_program) : kernels::plain_program(), 1, settings);
-  const double unit = unit_of(splats.program, seen);
-  const kernels::View view = in_unit(seen, unit);
-  splats.draw.pixel_program = 2;
-  splats.draw.texture = 0;
-  DrawState& state = splats.draw.state;
-  state.depth_write = false;
-  state.blend = true;
-  state.source_factor = pass.sum_weights ? BlendFactor::one : BlendFactor::src_alpha;
-  state.destination_factor = BlendFactor::one;
-
-  add_buffers(buffers, view, unit, settings, visibility, splats, trace);
-  const auto shape = settings.circular_cutoff ? kernels::CutoffShape::circle : kernels::CutoffShape::square;
-  trace.textures.push_back(kernels::alpha_texture(settings.cutoff, texture_length(settings), shape));
-  trace.programs = {kernels::shader_text(visibility.program.file), kernels::shader_text(splats.program.file),
-                    kernels::shader_text(pass.sum_weights ? kernels::kWeightedSplatPixelProgram
-                                                          : kernels::kSplatPixelProgram)};
-
-  const auto add_frame = [&](const std::vector<DrawnRange>& ranges, RecordedPass& second, bool normalize) {
-    if (!trace.commands.empty()) trace.commands.emplace_back(Present{});
-    trace.commands.emplace_back(Clear{});
-    for (RecordedPass* recorded : {&visibility, &second})
-      for (const DrawnRange& range : ranges) recorded->append(range, view, unit, settings, trace);
-    if (normalize) trace.commands.emplace_back(NormalizeOnHost{});
-  };
-  for (const std::vector<DrawnRange>& ranges : frames) add_frame(ranges, splats, pass.normalize_on_host);
-  if (pass.refine) {
-    RecordedPass still = add_still_pass(splats, buffers, frames.back(), view, unit, settings, trace);
-    add_frame(frames.back(), still, true);
-  }
-  place_buffers(settings, trace.buffers);
-  return trace;
+  std::vector<std::vector<DrawnRange>> frames_in_unit(frames.begin(), frames.end());
+  for (std::vector<DrawnRange>& ranges : frames_in_unit)
+    for (DrawnRange& range : ranges) range.depth_offset *= unit;
+  return trace_of(buffers_in_unit, frames_in_unit, in_unit(view, unit), settings, pass);
 }
 
 Trace splat_trace(const SurfelBuffer& surfels, const kernels::View& view, const Splatting& settings,

@@ -312,9 +312,7 @@ class Sampler {
 
 Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                         std::uint64_t seed) {
-  const auto is_draw = [](const Command& command) { return std::holds_alternative<Draw>(command); };
-  if (static_cast<std::size_t>(std::ranges::count_if(trace.commands, is_draw)) != work.size())
-    throw ModelError("there are not as many work records as draws");
+  expect_work_of_each_draw(trace, work);
   return estimate_sampled_beside(
       trace, [&](std::size_t draw) -> const DrawWork& { return work[draw]; }, machine, seed);
 }

@@ -40,8 +40,8 @@
     texels = counts = null;
     unit = image.dataset.unit;
     dialog.showModal();
-    const numbers = new Image();
-    numbers.src = image.dataset.counts ?? image.src;
+    const numbers = unit ? new Image() : shown;
+    if (unit) numbers.src = image.dataset.counts;
     Promise.all([shown.decode(), numbers.decode()]).then(() => {
       texels = texels_of(shown);
       if (unit) counts = texels_of(numbers);
