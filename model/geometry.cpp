@@ -120,9 +120,7 @@ void GeometryBatch::set_up_quads(std::size_t first, std::size_t count) {
                 kVertices % raster::kQuadVertices == 0);
   std::ranges::transform(std::span(triangles).subspan(first, count), std::back_inserter(piece_corners_),
                          &BatchTriangle::vertices);
-  const int bits = options_.formats.subpixel_bits;
-  raster::set_up_quads(projected_, 2 * first, viewport_, bits, raster::driver_rounding(bits),
-                       !bindings_->attributes.empty(), last_setups(count));
+  raster::set_up_quads(projected_, 2 * first, setup_options(), last_setups(count));
 }
 
 void GeometryBatch::assemble(BatchTriangle& triangle) {
@@ -181,10 +179,13 @@ void GeometryBatch::add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c)
 }
 
 void GeometryBatch::set_up() {
-  const int bits = options_.formats.subpixel_bits;
-  raster::set_up(corners_, viewport_, bits, raster::driver_rounding(bits), !bindings_->attributes.empty(),
-                 last_setups(waiting_));
+  raster::set_up(corners_, setup_options(), last_setups(waiting_));
   waiting_ = 0;
+}
+
+raster::SetupOptions GeometryBatch::setup_options() const {
+  const int bits = options_.formats.subpixel_bits;
+  return {viewport_, bits, raster::driver_rounding(bits), !bindings_->attributes.empty()};
 }
 
 std::span<raster::TriangleSetup> GeometryBatch::last_setups(std::size_t count) {

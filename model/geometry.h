@@ -62,6 +62,7 @@ class GeometryBatch {
   void each_attribute(Function function);
   void add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c);
   void set_up();
+  raster::SetupOptions setup_options() const;
   std::span<raster::TriangleSetup> last_setups(std::size_t count);  // of the last pieces
 
   const DrawBindings* bindings_ = nullptr;

@@ -27,6 +27,11 @@ constexpr std::pair<std::string_view, Fidelity> kFidelities[] = {{"functional", 
                                                                  {"cycle", Fidelity::cycle},
                                                                  {"referee", Fidelity::referee}};
 
+// Of the two that simulate every event.
+sim::Scheduler scheduler_of(Fidelity fidelity) {
+  return fidelity == Fidelity::referee ? sim::Scheduler::referee : sim::Scheduler::skip_ahead;
+}
+
 }  // namespace
 
 Fidelity fidelity_by_name(std::string_view name) {
@@ -96,9 +101,8 @@ sim::Result time_frame(const Trace& trace, std::span<const DrawWork> work, const
     case Fidelity::sampled:
       return sim::estimate_sampled(trace, work, machine, options.seed);
     case Fidelity::referee:
-      return sim::simulate(trace, work, machine, sim::Scheduler::referee, progress, options.observers);
     case Fidelity::cycle:
-      return sim::simulate(trace, work, machine, sim::Scheduler::skip_ahead, progress, options.observers);
+      return sim::simulate(trace, work, machine, scheduler_of(fidelity), progress, options.observers);
     case Fidelity::functional:
       break;
   }
@@ -176,10 +180,7 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
   const auto time = [&] {
     if (fidelity == Fidelity::sampled)
       return sim::estimate_sampled_beside(trace, work_of, machine, timing.seed, progress);
-    const bool every_cycle = fidelity == Fidelity::referee;
-    return sim::simulate_beside(trace, work_of, machine,
-                                every_cycle ? sim::Scheduler::referee : sim::Scheduler::skip_ahead, progress,
-                                timing.observers);
+    return sim::simulate_beside(trace, work_of, machine, scheduler_of(fidelity), progress, timing.observers);
   };
   sim::Result result = time();
   return {function.get(), std::move(result), 0, {}, {}};

@@ -49,6 +49,10 @@ int number_of(const std::string& text) {
 
 const std::string kDepth = "depth";  // that a pixel program writes
 
+bool bumps(isa::Opcode opcode) {
+  return opcode == isa::Opcode::bem || opcode == isa::Opcode::texbem || opcode == isa::Opcode::texbeml;
+}
+
 bool same_bits(const Vec4& a, const Vec4& b) {
   using Bits = std::array<std::uint32_t, 4>;
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
@@ -105,9 +109,9 @@ void ShaderDebugger::record_fragment(const ShaderCase& registers) {
     inputs_[0][c] = batch->v0[c][0];
     inputs_[1][c] = batch->v1[c][0];
   }
+  bump_ = registers.bump();
   const pixel::PixelProgram program(program_);
-  for (const pixel::FragmentState& state :
-       program.trace(constants_, *batch, registers.textures(), registers.bump())) {
+  for (const pixel::FragmentState& state : program.trace(constants_, *batch, registers.textures(), bump_)) {
     for (std::size_t i = 0; i < state.temporaries.size(); ++i)
       history_[fmt::format("r{}", i)].push_back(state.temporaries[i]);
     for (std::size_t i = 0; i < state.textures.size(); ++i)
@@ -139,7 +143,7 @@ std::string ShaderDebugger::source_text(const isa::Source& source) const {
   return values ? fmt::format("{} = {}", name, text_of((*values)[at_])) : name;
 }
 
-// The rows of a matrix are registers of their own.
+// The rows of a matrix are registers of their own; that of a bump instruction is a state of its stage.
 std::vector<std::string> ShaderDebugger::sources(const isa::Instruction& instruction) const {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < instruction.source_count; ++i) {
@@ -150,7 +154,40 @@ std::vector<std::string> ShaderDebugger::sources(const isa::Instruction& instruc
       if (std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
     }
   }
+  if (bumps(instruction.opcode)) {
+    const int stage = instruction.destination.index;
+    const auto& [matrix, scale, offset] = bump_[static_cast<std::size_t>(stage)];
+    texts.push_back(fmt::format("bump matrix of stage {} = {}", stage,
+                                text_of({matrix[0][0], matrix[0][1], matrix[1][0], matrix[1][1]})));
+    if (instruction.opcode == isa::Opcode::texbeml)
+      texts.push_back(
+          fmt::format("luminance scale {:.7g} and offset {:.7g} of stage {}", scale, offset, stage));
+  }
   return texts;
+}
+
+std::string ShaderDebugger::effect(const isa::Instruction& instruction, std::size_t after) const {
+  const std::string name = register_name(instruction.destination.file, instruction.destination.index);
+  const auto* values = find(name);
+  if (values == nullptr || !isa::find_opcode(program_.version, instruction.opcode)->has_destination)
+    return {};
+  const Vec4& before = (*values)[at_];
+  std::string read = fmt::format("        reads {} = {}\n", name, text_of(before));
+  switch (instruction.opcode) {
+    case isa::Opcode::texkill: {
+      const bool kills = before[0] < 0 || before[1] < 0 || before[2] < 0;
+      return fmt::format("{}        {}\n", read, kills ? "cancels the fragment" : "keeps the fragment");
+    }
+    case isa::Opcode::texdepth:
+    case isa::Opcode::texm3x2depth:
+      return fmt::format("{}        {} = {}\n", read, kDepth, text_of((*find(kDepth))[after]));
+    case isa::Opcode::texm3x2pad:
+    case isa::Opcode::texm3x3pad:  // a row of the product that a later instruction takes up
+      return read;
+    default:
+      return fmt::format("        {} before = {}\n        {} after  = {}\n", name, text_of(before), name,
+                         text_of((*values)[after]));
+  }
 }
 
 // One instruction, or a co-issued pair.
@@ -161,25 +198,7 @@ void ShaderDebugger::step(std::ostream& out) {
     const isa::Instruction& instruction = program_.instructions[place];
     out << fmt::format("{:>4}  {}\n", instruction.line, isa::disassemble(program_, instruction));
     for (const std::string& source : sources(instruction)) out << "        reads " << source << '\n';
-    const std::string name = register_name(instruction.destination.file, instruction.destination.index);
-    const auto* values = find(name);
-    if (values == nullptr || !isa::find_opcode(program_.version, instruction.opcode)->has_destination)
-      continue;
-    using enum isa::Opcode;
-    if (instruction.opcode == texkill) {
-      const Vec4& read = (*values)[at_];
-      const bool kills = read[0] < 0 || read[1] < 0 || read[2] < 0;
-      out << fmt::format("        reads {} = {}\n        {}\n", name, text_of(read),
-                         kills ? "cancels the fragment" : "keeps the fragment");
-      continue;
-    }
-    if (instruction.opcode == texdepth || instruction.opcode == texm3x2depth) {
-      out << fmt::format("        reads {} = {}\n        {} = {}\n", name, text_of((*values)[at_]), kDepth,
-                         text_of((*find(kDepth))[end]));
-      continue;
-    }
-    out << fmt::format("        {} before = {}\n        {} after  = {}\n", name, text_of((*values)[at_]),
-                       name, text_of((*values)[end]));
+    out << effect(instruction, end);
   }
   from_ = std::exchange(at_, end);
   if (at_end()) out << "end of the program\n";

@@ -45,12 +45,15 @@ class ShaderDebugger {
   bool at_end() const { return at_ == program_.instructions.size(); }
   // What an instruction reads, one text a register.
   std::vector<std::string> sources(const isa::Instruction& instruction) const;
+  // What the destination was, and what the instruction makes of it; `after`: instructions done with it.
+  std::string effect(const isa::Instruction& instruction, std::size_t after) const;
   std::string source_text(const isa::Source& source) const;
   const std::vector<Vec4>* find(const std::string& name) const;
 
   isa::Program program_;
   std::vector<Vec4> constants_;
   std::array<Vec4, 16> inputs_{};
+  pixel::BumpStages bump_{};
   History history_;
   std::set<std::string> written_;  // by the program: what can be printed and watched
   std::vector<std::string> watched_;

@@ -116,12 +116,52 @@ TEST(ShaderDebugger, SaysWhetherAFragmentIsKilled) {
       << "w is not read";
 }
 
+TEST(ShaderDebugger, ShowsTheRowsAndTheMatricesThatAreNoRegisters) {
+  const std::string registers = R"({"texcoords": {"t1": ["3e800000", "0", "0", "0"]}, "bump": )"
+                                R"({"t1": ["3f000000", "0", "0", "bf800000", "40000000", "3e800000"]}})";
+  const std::string pad =
+      transcript("ps_1_1\ntex t0\ntexm3x2pad t1, t0\ntexm3x2tex t2, t0\nmov r0, t2\n", "step 2\n", registers);
+  EXPECT_NE(pad.find("reads t1 = (0.25, 0, 0, 0)"), std::string::npos) << pad;
+  EXPECT_EQ(pad.find("t1 before"), std::string::npos) << "a row, no result\n" << pad;
+  const auto bumped = [&](const std::string& texbem) {
+    return transcript("ps_1_1\ntex t0\n" + texbem + " t1, t0\nmov r0, t1\n", "step 2\n", registers);
+  };
+  for (const char* texbem : {"texbem", "texbeml"})
+    EXPECT_NE(bumped(texbem).find("reads bump matrix of stage 1 = (0.5, 0, 0, -1)"), std::string::npos)
+        << bumped(texbem);
+  const std::string luminance = "reads luminance scale 2 and offset 0.25 of stage 1";
+  EXPECT_EQ(bumped("texbem").find(luminance), std::string::npos);
+  EXPECT_NE(bumped("texbeml").find(luminance), std::string::npos) << bumped("texbeml");
+}
+
+// Before c0, where nothing is: zeros.
+TEST(ShaderDebugger, AConstantOutOfRangeIsCalledThat) {
+  const std::string text = transcript("vs_1_1\nmov a0.x, c0.x\nmov oPos, c[a0.x + 1]\n", "step 2\n",
+                                      R"({"constants": {"c0": ["c0a00000", "0", "0", "0"]}})");
+  EXPECT_NE(text.find("reads c[out of range] = (0, 0, 0, 0)"), std::string::npos) << text;
+}
+
+TEST(ShaderDebugger, AnUnwatchedRegisterStopsNothing) {
+  const std::string text = transcript(kProgram, "watch r0\nunwatch r0\ncontinue\n", kInputs);
+  EXPECT_NE(text.find("end of the program"), std::string::npos) << text;
+}
+
+TEST(ShaderDebugger, RestartsHelpsAndQuits) {
+  const std::string text = transcript(kProgram, "step 2\nrestart\nlist\nhelp\nquit\nstep\n", kInputs);
+  EXPECT_NE(text.find("\n>   2  mov r0, v0\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("restart, help, quit\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("reads", text.find("restart, help")), std::string::npos) << "after quit\n" << text;
+}
+
 TEST(ShaderDebugger, AWrongCommandIsAUserErrorWithItsLine) {
   const auto error_of = [](const std::string& commands) {
     return splatscope::error_of([&] { transcript(kProgram, commands); });
   };
   EXPECT_EQ(error_of("step\nprint r7\n"), "commands:2: the program writes no r7, expected oPos, r0");
   EXPECT_EQ(error_of("jump\n").substr(0, 32), "commands:1: 'jump' is no command");
+  EXPECT_EQ(error_of("run\n"), "commands:1: run where? expected a line");
+  EXPECT_EQ(error_of("watch\n"), "commands:1: watch what? expected registers");
+  EXPECT_EQ(error_of("watch r7\n"), "commands:1: the program writes no r7, expected oPos, r0");
   EXPECT_EQ(error_of("step x\n"), "commands:1: 'x', expected a whole number from 1 to 2147483647");
 }
 

@@ -219,7 +219,8 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
   const std::vector<std::byte> stored = traces::trace_bytes(trace, "--cache");
   constexpr const char* kProgram = "/proc/self/exe";
   const std::string program = file_bytes(kProgram);
-  if (program.empty())
+  std::error_code error;
+  if (program.empty() || program.size() != std::filesystem::file_size(kProgram, error))
     throw UserError(kProgram, 0, "cannot be read, expected this program, whose work is kept by its bytes");
   // All of them by name: one more does not compile until it is here too.
   const auto& [arithmetic, color, combiner, frame, rounding, depth, subpixel_bits, filter_bits,

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <random>
 
 #include "model/error.h"
@@ -82,6 +83,32 @@ TEST_F(PointFileTest, BinaryOfBothByteOrders) {
   }
 }
 
+// Its least and its largest value, which a type of another size or without a sign would tell apart.
+TEST_F(PointFileTest, BinaryOfEachWholeType) {
+  const auto expect_ends = [&]<class Value>(std::string_view type, Value) {
+    for (const bool big_endian : {false, true}) {
+      std::string bytes = fmt::format(
+          "ply\nformat binary_{0}_endian 1.0\nelement vertex 1\nproperty {1} x\nproperty {1} y\n"
+          "property float z\nend_header\n",
+          big_endian ? "big" : "little", type);
+      append_bytes(bytes, std::numeric_limits<Value>::min(), big_endian);
+      append_bytes(bytes, std::numeric_limits<Value>::max(), big_endian);
+      append_bytes(bytes, 0.5f, big_endian);
+      const PointFile points = read(bytes);
+      ASSERT_EQ(points.surfels.size(), 1u) << type;
+      EXPECT_EQ(points.surfels[0].position,
+                glm::vec3(std::numeric_limits<Value>::min(), std::numeric_limits<Value>::max(), 0.5f))
+          << type;
+    }
+  };
+  expect_ends("char", std::int8_t{});
+  expect_ends("uchar", std::uint8_t{});
+  expect_ends("short", std::int16_t{});
+  expect_ends("ushort", std::uint16_t{});
+  expect_ends("int", std::int32_t{});
+  expect_ends("uint", std::uint32_t{});
+}
+
 TEST_F(PointFileTest, EveryTruncationOfBinaryIsRefused) {
   const std::string whole = binary_file(false);
   for (std::size_t size = 0; size < whole.size(); ++size)
@@ -124,6 +151,9 @@ TEST_F(PointFileTest, ErrorsNameLineOrByte) {
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty int x\n")
                 .find(":5: property \"x\" is given twice"),
             0u);
+  std::string many = "ply\nformat ascii 1.0\nelement vertex 1\n";
+  for (int i = 0; i <= 256; ++i) many += fmt::format("property float p{}\n", i);
+  EXPECT_EQ(error_of(many), ":260: too many properties, expected at most 256");
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\nend_header\n").find(":3: the header has no element vertex"), 0u);
   EXPECT_EQ(error_of("ply\nelement vertex 0\nend_header\n").find(":3: the header has no line \"format\""),
             0u);

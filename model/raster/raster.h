@@ -60,18 +60,21 @@ struct Corners {
   }
 };
 
-// Sets up the first out.size() triangles (at most Corners::kCapacity). `rounding` (pixels) is added to x and
-// y before they are truncated to the grid. Coordinates lie within 2 kGuardBand. Not `interpolates`: only
-// the depth is wanted, the other planes stay as they are.
-void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
-            bool interpolates, std::span<TriangleSetup> out);
+struct SetupOptions {
+  primitive::Viewport viewport;
+  int subpixel_bits = 4;
+  double rounding = driver_rounding(4);  // pixels, added to x and y before they are truncated to the grid
+  bool interpolates = true;              // false: only the depth is wanted, the other planes stay as they are
+};
+
+// Sets up the first out.size() triangles (at most Corners::kCapacity). Coordinates lie within 2 kGuardBand.
+void set_up(const Corners& corners, const SetupOptions& options, std::span<TriangleSetup> out);
 
 // The same for triangles 0 1 2 and 0 2 3 of each four vertices, from number `first_vertex` on, in turn: any
 // number. Behind the last ones the arrays have room up to a whole number of kQuadVertices.
 inline constexpr std::size_t kQuadVertices = 32;
 void set_up_quads(const primitive::ProjectedVertices& vertices, std::size_t first_vertex,
-                  const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates,
-                  std::span<TriangleSetup> out);
+                  const SetupOptions& options, std::span<TriangleSetup> out);
 
 // 8x8-pixel tiles that the rectangle of a setup touches. It has the pixels whose centres lie on its right and
 // lower side, which the fill rule leaves out: the scan looks at them too.

@@ -36,7 +36,7 @@ void set_up_triangles(benchmark::State& state) {
   const auto corners = triangles_of(4);
   std::vector<TriangleSetup> setups(kTriangles);
   for (auto _ : state) {
-    set_up(*corners, kViewport, 4, driver_rounding(4), true, setups);
+    set_up(*corners, {kViewport}, setups);
     benchmark::DoNotOptimize(setups.data());
   }
   count(state, kTriangles);
@@ -47,7 +47,7 @@ BENCHMARK(set_up_triangles);
 void rasterise(benchmark::State& state, bool depth_test) {
   const auto corners = triangles_of(static_cast<double>(state.range(0)));
   std::vector<TriangleSetup> setups(kTriangles);
-  set_up(*corners, kViewport, 4, driver_rounding(4), true, setups);
+  set_up(*corners, {kViewport}, setups);
   std::vector<std::uint32_t> stored(512 * 512, output::quantize_depth(1, DepthFormat::z24));
   const DepthTarget depth{stored, kViewport, DepthFormat::z24, depth_test, depth_test};
   const auto windows = std::make_unique<std::array<Window, kMaxWindows>>();

@@ -39,7 +39,7 @@ TriangleSetup set_up(const WindowTriangle& t, int subpixel_bits, double rounding
   const auto corners = std::make_unique<Corners>();
   for (std::size_t i = 0; i < 3; ++i) corners->set(0, i, t[i].x, t[i].y, t[i].z, t[i].inverse_w);
   TriangleSetup setup;
-  raster::set_up(*corners, kViewport, subpixel_bits, rounding, true, std::span(&setup, 1));
+  raster::set_up(*corners, {kViewport, subpixel_bits, rounding}, std::span(&setup, 1));
   return setup;
 }
 
@@ -277,10 +277,12 @@ TEST(Raster, QuadsAreSetUpAsTheirTriangles) {
                        vertices.inverse_w[i]);
         }
     }
+    const int bits = static_cast<int>(quads % 9);
+    const SetupOptions options{kViewport, bits, driver_rounding(bits), quads % 3 != 0};
     testing::on_each_simd_target([&] {
       std::vector<TriangleSetup> alone(2 * quads), together(2 * quads);
-      raster::set_up(*corners, kViewport, 4, driver_rounding(4), true, alone);
-      set_up_quads(vertices, kFirst, kViewport, 4, driver_rounding(4), true, together);
+      raster::set_up(*corners, options, alone);
+      set_up_quads(vertices, kFirst, options, together);
       for (std::size_t i = 0; i < 2 * quads; ++i) ASSERT_NO_FATAL_FAILURE(expect_same(alone[i], together[i]));
     });
   }

@@ -171,8 +171,11 @@ struct Corner {
 // All triangles alike.
 class SetUp {
  public:
-  SetUp(const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates)
-      : viewport_(viewport), grid_(subpixel_bits), rounding_(set(rounding)), interpolates_(interpolates) {}
+  explicit SetUp(const SetupOptions& options)
+      : viewport_(options.viewport),
+        grid_(options.subpixel_bits),
+        rounding_(set(options.rounding)),
+        interpolates_(options.interpolates) {}
 
   Corner corner(V x, V y, V z, V inverse_w) const {
     return {x, y, grid_.snap(hn::Add(x, rounding_)), grid_.snap(hn::Add(y, rounding_)), z, inverse_w};
@@ -197,9 +200,8 @@ class SetUp {
   Lanes lanes_;
 };
 
-void set_up(const Corners& in, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
-            bool interpolates, std::span<TriangleSetup> out) {
-  SetUp set_up(viewport, subpixel_bits, rounding, interpolates);
+void set_up(const Corners& in, const SetupOptions& options, std::span<TriangleSetup> out) {
+  SetUp set_up(options);
   for (std::size_t first = 0; first < out.size(); first += hn::Lanes(D{})) {
     const auto corner = [&](std::size_t k) HWY_ATTR {
       const auto read = [&](const auto& values) HWY_ATTR { return hn::Load(D{}, values[k] + first); };
@@ -211,9 +213,8 @@ void set_up(const Corners& in, const primitive::Viewport& viewport, int subpixel
 
 // Two corners of a quad are in both of its triangles.
 void set_up_quads(const primitive::ProjectedVertices& in, std::size_t first_vertex,
-                  const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates,
-                  std::span<TriangleSetup> out) {
-  SetUp set_up(viewport, subpixel_bits, rounding, interpolates);
+                  const SetupOptions& options, std::span<TriangleSetup> out) {
+  SetUp set_up(options);
   for (std::size_t first = 0; first < out.size(); first += 2 * hn::Lanes(D{})) {
     const auto read = [&](const std::vector<double>& values, V* four) HWY_ATTR {
       hn::LoadInterleaved4(D{}, values.data() + first_vertex + 2 * first, four[0], four[1], four[2], four[3]);
@@ -238,16 +239,13 @@ namespace splatscope::raster {
 HWY_EXPORT(set_up);
 HWY_EXPORT(set_up_quads);
 
-void set_up(const Corners& corners, const primitive::Viewport& viewport, int subpixel_bits, double rounding,
-            bool interpolates, std::span<TriangleSetup> out) {
-  HWY_DYNAMIC_DISPATCH(set_up)(corners, viewport, subpixel_bits, rounding, interpolates, out);
+void set_up(const Corners& corners, const SetupOptions& options, std::span<TriangleSetup> out) {
+  HWY_DYNAMIC_DISPATCH(set_up)(corners, options, out);
 }
 
 void set_up_quads(const primitive::ProjectedVertices& vertices, std::size_t first_vertex,
-                  const primitive::Viewport& viewport, int subpixel_bits, double rounding, bool interpolates,
-                  std::span<TriangleSetup> out) {
-  HWY_DYNAMIC_DISPATCH(set_up_quads)
-  (vertices, first_vertex, viewport, subpixel_bits, rounding, interpolates, out);
+                  const SetupOptions& options, std::span<TriangleSetup> out) {
+  HWY_DYNAMIC_DISPATCH(set_up_quads)(vertices, first_vertex, options, out);
 }
 }  // namespace splatscope::raster
 #endif

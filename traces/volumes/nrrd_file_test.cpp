@@ -63,6 +63,27 @@ TEST_F(NrrdFile, ReadsEachTypeInEitherOrderOfBytes) {
             (std::vector<float>{0.25f}));
 }
 
+// Its least and its largest value, which a type of another size or without a sign would tell apart.
+TEST_F(NrrdFile, ReadsTheEndsOfEachWholeType) {
+  const auto expect_ends = [&]<class Value>(const std::string& name, Value) {
+    using Limits = std::numeric_limits<Value>;
+    for (const bool big : {false, true}) {
+      std::string text = header(name, "2 1 1");
+      if (big) text.replace(text.find("little"), 6, "big");
+      text += bytes_of_values<Value>({Limits::min(), Limits::max()}, big);
+      EXPECT_EQ(read_nrrd(write("a.nrrd", text)).values,
+                (std::vector<float>{static_cast<float>(Limits::min()), static_cast<float>(Limits::max())}))
+          << name;
+    }
+  };
+  expect_ends("int8", std::int8_t{});
+  expect_ends("uint8", std::uint8_t{});
+  expect_ends("int16", std::int16_t{});
+  expect_ends("uint16", std::uint16_t{});
+  expect_ends("int32", std::int32_t{});
+  expect_ends("uint32", std::uint32_t{});
+}
+
 TEST_F(NrrdFile, ReadsRawDataBesideAHeader) {
   write("a.raw", "skip\1\2");
   const auto path = write("a.nhdr", header("uint8", "2 1 1", "data file: a.raw\nbyte skip: 4\n"));
@@ -115,6 +136,12 @@ TEST_F(NrrdFile, NamesTheLineOfWhatIsWrong) {
             "a.nrrd:9: a spacing of \"nan\", expected a number from 1e-9 to 1e9");
   EXPECT_EQ(error_of(header("uint8", "1 1 1", "spacings: -1 1 1\n")),
             "a.nrrd:9: a spacing of \"-1\", expected a number from 1e-9 to 1e9");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "byte skip: -1\n")),
+            "a.nrrd:9: byte skip is \"-1\", expected a whole number from 0 to 4294967295");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "line skip: 1\n")), "a.nrrd:9: line skip is \"1\", expected 0");
+  EXPECT_EQ(error_of("NRRD0004\nendian: middle\n"), "a.nrrd:2: endian is \"middle\", expected big or little");
+  EXPECT_EQ(error_of(header("uint8", "1 1 1", "data file: LIST\n")),
+            "a.nrrd:9: data file is \"LIST\", expected the name of one file");
   EXPECT_EQ(error_of(header("uint8", "1 1 1", "sizes: 1 1 1\n")),
             "a.nrrd:9: \"sizes\" for the second time, expected it once, as in line 5");
   EXPECT_EQ(error_of(header("uint8", "1 1 1", "space directions: (1,0,0) (0.8,0.6,0) (0,0,1)\n")),
