@@ -25,6 +25,8 @@ MemoryChannel::MemoryChannel(std::string name, const Machine::Memory& spec)
       interleave_shift_(log2_of(spec.interleave_bytes)),
       row_shift_(log2_of(spec.row_bytes)),
       channel_shift_(log2_of(spec.channels)),
+      bank_shift_(log2_of(spec.banks)),
+      burst_shift_(log2_of(spec.burst_bytes)),
       banks_(static_cast<std::size_t>(spec.banks)) {
   queue_.reserve(static_cast<std::size_t>(spec.schedule_queue));
 }
@@ -40,22 +42,35 @@ MemoryChannel::Entry MemoryChannel::entry_of(const MemoryRequest& request, std::
   // The channel's own address: without the bits that chose the channel.
   const std::uint32_t above = request.address >> (interleave_shift_ + channel_shift_);
   const std::uint32_t row = above >> (row_shift_ - interleave_shift_);
-  const auto banks = static_cast<std::uint32_t>(spec_.banks);
-  const auto burst = static_cast<std::uint32_t>(spec_.burst_bytes);
-  return {row / banks,
+  return {row >> bank_shift_,
           request.slot,
-          static_cast<std::uint16_t>((request.bytes + burst - 1) / burst),
-          static_cast<std::uint8_t>(row % banks),
+          static_cast<std::uint16_t>((request.bytes + (1u << burst_shift_) - 1) >> burst_shift_),
+          static_cast<std::uint8_t>(row & ((1u << bank_shift_) - 1)),
           static_cast<std::uint8_t>(client),
           request.write};
 }
 
-// One request a cycle, the clients in turn. There is one, and room for it.
-void MemoryChannel::accept(Cycle now) {
+// One request a cycle, the clients in turn.
+Cycle MemoryChannel::accept(Cycle now) {
+  if (is_full()) return kNever;
+  const auto behind = [&](std::size_t client) { return client + 1 == clients_.size() ? 0 : client + 1; };
+  const Client* chosen = nullptr;
+  Cycle next = kNever;  // of the others
   std::size_t client = turn_;
-  while (!clients_[client].requests->can_pop(now)) client = client + 1 == clients_.size() ? 0 : client + 1;
-  queue_.push_back(entry_of(clients_[client].requests->pop(now), client));
-  turn_ = client + 1 == clients_.size() ? 0 : client + 1;
+  do {
+    const Cycle visible = clients_[client].requests->next_visible();
+    if (chosen == nullptr && visible <= now) {
+      chosen = &clients_[client];
+    } else {
+      next = std::min(next, visible);
+    }
+    client = behind(client);
+  } while (client != turn_);
+  if (chosen == nullptr) return next;
+  const auto place = static_cast<std::size_t>(chosen - clients_.data());
+  queue_.push_back(entry_of(chosen->requests->pop(now), place));
+  turn_ = behind(place);
+  return is_full() ? kNever : std::min(next, chosen->requests->next_visible());
 }
 
 // The cycle at which the request's first data can be on the bus.
@@ -133,24 +148,12 @@ void MemoryChannel::issue(Cycle now, std::size_t index) {
   }
 }
 
-Cycle MemoryChannel::next_accept() const {
-  if (queue_.size() >= static_cast<std::size_t>(spec_.schedule_queue)) return kNever;
-  Cycle next = kNever;
-  for (const Client& client : clients_) next = std::min(next, client.requests->next_visible());
-  return next;
-}
-
 Step MemoryChannel::advance(Cycle now) {
   if (!queue_.empty() && next_issue_ <= now) issue(now, pick(now));
-  Cycle next = next_accept();
-  const bool accepted = next <= now;
-  if (accepted) {
-    accept(now);
-    next = next_accept();
-  }
+  const Cycle next = accept(now);
   if (!queue_.empty()) return busy(std::max(std::min(next, next_issue_), now + 1));
   if (bus_free_ > now) return busy(std::min(next, bus_free_));
-  return accepted ? busy(now + 1) : idle(next);
+  return idle(next);
 }
 
 std::vector<Statistic> MemoryChannel::statistics(Cycle now) const {

@@ -41,16 +41,16 @@ class MemoryChannel final : public Unit {
   };
 
   Entry entry_of(const MemoryRequest& request, std::size_t client) const;
-  void accept(Cycle now);
+  bool is_full() const { return queue_.size() >= static_cast<std::size_t>(spec_.schedule_queue); }
+  Cycle accept(Cycle now);  // when the next can be
   std::size_t pick(Cycle now) const;
   void issue(Cycle now, std::size_t index);
   Cycle earliest_data(Cycle now, const Entry& entry) const;
   void open_row(Cycle now, const Entry& entry);
-  Cycle next_accept() const;
 
   Machine::Memory spec_;
   Cycle burst_clocks_, precharge_, activate_, cas_, row_active_, write_recovery_, turnaround_;
-  std::uint32_t interleave_shift_, row_shift_, channel_shift_;
+  std::uint32_t interleave_shift_, row_shift_, channel_shift_, bank_shift_, burst_shift_;
   std::vector<Client> clients_;
   std::size_t turn_ = 0;
   std::vector<Entry> queue_;  // oldest first
