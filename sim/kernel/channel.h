@@ -55,18 +55,22 @@ class Channel final : public ChannelState {
     Slot& slot = slots_[tail_ & mask_];
     slot.value = value;
     slot.at = crossing_ ? across(now, producer_, consumer_) + latency_ - 1 : now + latency_;
-    if (head_ == tail_++) wake(consumer_, producer_, slot.at);
+    if (head_ == tail_++) {
+      visible_ = slot.at;
+      wake(consumer_, producer_, slot.at);
+    }
   }
 
   // Consumer's side.
   bool can_pop(Cycle now) const { return next_visible() <= now; }
   // When the front item is visible; kNever: the channel is empty (a push wakes the consumer).
-  Cycle next_visible() const { return head_ == tail_ ? kNever : slots_[head_ & mask_].at; }
+  Cycle next_visible() const { return visible_; }
   const T& front() const { return slots_[head_ & mask_].value; }
   T pop(Cycle now) {
     Slot& slot = slots_[head_ & mask_];
     slot.at = crossing_ ? across(now, consumer_, producer_) : now + 1;
     if (tail_ - head_++ >= capacity_) wake(producer_, consumer_, slot.at);
+    visible_ = empty() ? kNever : slots_[head_ & mask_].at;
     return slot.value;
   }
 
@@ -101,6 +105,7 @@ class Channel final : public ChannelState {
   std::uint64_t mask_;
   std::uint64_t head_ = 0;  // items popped so far
   std::uint64_t tail_ = 0;  // items pushed so far
+  Cycle visible_ = kNever;  // of the front item, which is asked for more often than there is another
   std::vector<Slot> slots_;
 };
 
