@@ -53,24 +53,23 @@ MemoryChannel::Entry MemoryChannel::entry_of(const MemoryRequest& request, std::
 // One request a cycle, the clients in turn.
 Cycle MemoryChannel::accept(Cycle now) {
   if (is_full()) return kNever;
-  const auto behind = [&](std::size_t client) { return client + 1 == clients_.size() ? 0 : client + 1; };
-  const Client* chosen = nullptr;
-  Cycle next = kNever;  // of the others
-  std::size_t client = turn_;
-  do {
+  const std::size_t count = clients_.size();
+  std::size_t chosen = count;  // none
+  Cycle next = kNever;         // of the others
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t client = turn_ + i < count ? turn_ + i : turn_ + i - count;
     const Cycle visible = clients_[client].requests->next_visible();
-    if (chosen == nullptr && visible <= now) {
-      chosen = &clients_[client];
+    if (chosen == count && visible <= now) {
+      chosen = client;
     } else {
       next = std::min(next, visible);
     }
-    client = behind(client);
-  } while (client != turn_);
-  if (chosen == nullptr) return next;
-  const auto place = static_cast<std::size_t>(chosen - clients_.data());
-  queue_.push_back(entry_of(chosen->requests->pop(now), place));
-  turn_ = behind(place);
-  return is_full() ? kNever : std::min(next, chosen->requests->next_visible());
+  }
+  if (chosen == count) return next;
+  Channel<MemoryRequest>& requests = *clients_[chosen].requests;
+  queue_.push_back(entry_of(requests.pop(now), chosen));
+  turn_ = chosen + 1 == count ? 0 : chosen + 1;
+  return is_full() ? kNever : std::min(next, requests.next_visible());
 }
 
 // The cycle at which the request's first data can be on the bus.
