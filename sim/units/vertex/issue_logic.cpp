@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <string>
 #include <string_view>
 
 #include "model/error.h"
@@ -23,6 +25,9 @@ IssueLogic::IssueLogic(const std::vector<IssueSlot>& slots, const Machine::Verte
       scalar_interval_(static_cast<Countdown>(spec.scalar_interval)),
       reload_cycles_(static_cast<Countdown>(spec.reload_cycles)),
       threads_(static_cast<std::size_t>(spec.threads)) {
+  constexpr int kMost = std::numeric_limits<Countdown>::max() - 1;  // parameters.cpp allows less
+  if (std::max({spec.vector_latency, spec.scalar_latency, spec.scalar_interval, spec.reload_cycles}) > kMost)
+    throw ModelError("issue logic: latencies are counted up to " + std::to_string(kMost));
   for (Thread& thread : threads_) thread.slot = static_cast<std::uint16_t>(slots.size());
 }
 

@@ -47,7 +47,7 @@ class IssueLogic {
   std::size_t hash() const;
 
  private:
-  // Counts down from at most 65: latencies and reload_cycles are at most 64 (parameters.cpp).
+  // Counts down from a latency or reload_cycles, and one more.
   using Countdown = std::uint8_t;
   struct Thread {
     std::uint16_t slot = 0;                     // the next to issue; the number of slots: no vertex

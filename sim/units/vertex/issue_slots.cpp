@@ -4,6 +4,7 @@
 
 #include "model/isa/opcode.h"
 #include "model/isa/validate.h"
+#include "model/vertex/vertex_program.h"
 
 namespace splatscope::sim {
 namespace {
@@ -13,7 +14,7 @@ using isa::Opcode;
 using isa::RegisterFile;
 using isa::Source;
 
-constexpr ComponentMask kAddress = ComponentMask{1} << 48;
+constexpr ComponentMask kAddress = ComponentMask{1} << 48, kScratch = ComponentMask{1} << 52;
 
 bool is_scalar(Opcode opcode) {
   switch (opcode) {
@@ -26,42 +27,6 @@ bool is_scalar(Opcode opcode) {
     default:
       return false;
   }
-}
-
-// The rows of a matrix macro: a dot product each.
-std::vector<Instruction> matrix_rows(const Instruction& instruction, const isa::MatrixShape& shape) {
-  std::vector<Instruction> rows;
-  for (int row = 0; row < shape.rows; ++row) {
-    Instruction dot = instruction;
-    dot.opcode = shape.columns == 4 ? Opcode::dp4 : Opcode::dp3;
-    dot.destination.mask = static_cast<std::uint8_t>(1u << row);
-    dot.sources[1].index = static_cast<std::uint16_t>(instruction.sources[1].index + row);
-    rows.push_back(dot);
-  }
-  return rows;
-}
-
-// exp, log and frc: a scalar instruction and a chain behind it, each on the result of the one before. What
-// the chip runs for them is not known; the length is Direct3D's.
-std::vector<Instruction> chain(const Instruction& instruction, int slots) {
-  Instruction link = instruction;
-  link.opcode = instruction.opcode == Opcode::log ? Opcode::logp : Opcode::expp;
-  std::vector<Instruction> links{link};
-  link.opcode = Opcode::mul;
-  link.source_count = 1;
-  link.sources[0] = {};
-  link.sources[0].file = instruction.destination.file;
-  link.sources[0].index = instruction.destination.index;
-  links.resize(static_cast<std::size_t>(slots), link);
-  return links;
-}
-
-std::vector<Instruction> expanded(const Instruction& instruction, isa::Version version) {
-  if (const auto shape = isa::matrix_shape(instruction.opcode); shape.rows != 0)
-    return matrix_rows(instruction, shape);
-  const isa::OpcodeInfo* info = isa::find_opcode(version, instruction.opcode);
-  if (info && info->slots > 1) return chain(instruction, info->slots);
-  return {instruction};
 }
 
 ComponentMask reads_of(const Instruction& instruction) {
@@ -87,10 +52,65 @@ ComponentMask writes_of(const Instruction& instruction) {
   }
 }
 
-bool writes_output(const Instruction& instruction) {
-  const RegisterFile file = instruction.destination.file;
-  return instruction.opcode != Opcode::nop && file != RegisterFile::temporary &&
-         file != RegisterFile::address;
+// Bit 4n + c: component c of output n.
+ComponentMask outputs_of(const Instruction& instruction) {
+  if (instruction.opcode == Opcode::nop) return 0;
+  const auto output = vertex::output_of(instruction.destination.file, instruction.destination.index);
+  return output ? ComponentMask{instruction.destination.mask} << (4 * *output) : 0;
+}
+
+// An instruction of the expanded program, and the place of what it stands for in the program.
+struct Part {
+  Part(const Instruction& of, int at)
+      : instruction(of), place(at), reads(reads_of(of)), writes(writes_of(of)), outputs(outputs_of(of)) {}
+
+  Instruction instruction;
+  int place;
+  ComponentMask reads, writes, outputs;
+};
+
+// The rows of a matrix macro: a dot product each.
+std::vector<Part> matrix_rows(const Instruction& instruction, int place, const isa::MatrixShape& shape) {
+  std::vector<Part> rows;
+  for (int row = 0; row < shape.rows; ++row) {
+    Instruction dot = instruction;
+    dot.opcode = shape.columns == 4 ? Opcode::dp4 : Opcode::dp3;
+    dot.destination.mask = static_cast<std::uint8_t>(1u << row);
+    dot.sources[1].index = static_cast<std::uint16_t>(instruction.sources[1].index + row);
+    rows.emplace_back(dot, place);
+  }
+  return rows;
+}
+
+// exp, log and frc: a scalar instruction and a chain behind it, each on the result of the one before, of
+// which the last writes an output. What the chip runs for them is not known; the length is Direct3D's.
+std::vector<Part> chain(const Instruction& instruction, int place, int slots) {
+  const Part whole(instruction, place);
+  std::vector<Part> links(static_cast<std::size_t>(slots), whole);
+  const ComponentMask between = whole.writes != 0 ? whole.writes : kScratch;
+  for (Part& link : links) {
+    const bool first = &link == &links.front(), last = &link == &links.back();
+    link.instruction.opcode = !first                              ? Opcode::mul
+                              : instruction.opcode == Opcode::log ? Opcode::logp
+                                                                  : Opcode::expp;
+    if (!first) {
+      link.instruction.source_count = 0;  // a register between the links, no constant and no input
+      link.reads = between;
+    }
+    if (!last) {
+      link.writes = between;
+      link.outputs = 0;
+    }
+  }
+  return links;
+}
+
+std::vector<Part> expanded(const Instruction& instruction, int place, isa::Version version) {
+  if (const auto shape = isa::matrix_shape(instruction.opcode); shape.rows != 0)
+    return matrix_rows(instruction, place, shape);
+  const isa::OpcodeInfo* info = isa::find_opcode(version, instruction.opcode);
+  if (info && info->slots > 1) return chain(instruction, place, info->slots);
+  return {{instruction, place}};
 }
 
 bool uses_third_port(Opcode opcode) {
@@ -110,32 +130,26 @@ bool at_most_one(const Instruction& a, const Instruction& b, RegisterFile file) 
   return true;
 }
 
-bool can_pair(const Instruction& first, const Instruction& second) {
-  if (first.opcode == Opcode::nop || second.opcode == Opcode::nop) return false;
-  if (is_scalar(first.opcode) == is_scalar(second.opcode)) return false;
-  const Instruction& vector = is_scalar(first.opcode) ? second : first;
-  return !uses_third_port(vector.opcode) &&
-         (writes_of(first) & (reads_of(second) | writes_of(second))) == 0 &&
-         at_most_one(first, second, RegisterFile::constant) &&
-         at_most_one(first, second, RegisterFile::input) && !(writes_output(first) && writes_output(second));
+bool can_pair(const Part& first, const Part& second) {
+  const Instruction &a = first.instruction, &b = second.instruction;
+  if (a.opcode == Opcode::nop || b.opcode == Opcode::nop) return false;
+  if (is_scalar(a.opcode) == is_scalar(b.opcode)) return false;
+  const Instruction& vector = is_scalar(a.opcode) ? b : a;
+  return !uses_third_port(vector.opcode) && (first.writes & (second.reads | second.writes)) == 0 &&
+         at_most_one(a, b, RegisterFile::constant) && at_most_one(a, b, RegisterFile::input) &&
+         (first.outputs == 0 || second.outputs == 0);
 }
-
-// An instruction of the expanded program, and the place of what it stands for in the program.
-struct Part {
-  Instruction instruction;
-  int place;
-};
 
 void add(IssueSlot& slot, const Part& part) {
   const Instruction& instruction = part.instruction;
   slot.instructions[slot.instructions[0] < 0 ? 0 : 1] = part.place;
-  slot.reads |= reads_of(instruction);
+  slot.reads |= part.reads;
   if (is_scalar(instruction.opcode)) {
     slot.has_scalar = true;
-    slot.scalar_writes |= writes_of(instruction);
+    slot.scalar_writes |= part.writes;
   } else {
     slot.has_vector = true;
-    slot.vector_writes |= writes_of(instruction);
+    slot.vector_writes |= part.writes;
   }
 }
 
@@ -151,9 +165,7 @@ class Reorder {
     vector_distance_ = in_slots(spec.vector_latency);
     scalar_distance_ = in_slots(spec.scalar_latency);
     scalar_gap_ = spec.scalar_interval;
-    for (const Part& part : parts) {
-      nodes_.push_back({reads_of(part.instruction), writes_of(part.instruction)});
-    }
+    nodes_.resize(count_);
     for (std::size_t i = count_; i-- > 0;) {
       each_bound(i, [&](Node& later, int apart) {
         nodes_[i].height = std::max(nodes_[i].height, later.height + apart);
@@ -183,8 +195,6 @@ class Reorder {
 
  private:
   struct Node {
-    ComponentMask reads;
-    ComponentMask writes;
     int height = 0;     // slots to the end of the longest chain behind it
     int waits_for = 0;  // that are not placed and have to stand before it
     int earliest = 0;   // slot, by those that are placed
@@ -193,11 +203,11 @@ class Reorder {
 
   // Slots that `later` must stand behind `earlier`; -1: they are independent.
   int distance(std::size_t earlier, std::size_t later) const {
-    const Node& a = nodes_[earlier];
-    const Node& b = nodes_[later];
-    if ((a.writes & (b.reads | b.writes)) != 0) {
-      return is_scalar(parts_[earlier].instruction.opcode) ? scalar_distance_ : vector_distance_;
-    }
+    const Part& a = parts_[earlier];
+    const Part& b = parts_[later];
+    if ((a.writes & (b.reads | b.writes)) != 0)
+      return is_scalar(a.instruction.opcode) ? scalar_distance_ : vector_distance_;
+    if ((a.outputs & b.outputs) != 0) return 1;
     return (a.reads & b.writes) != 0 ? 0 : -1;
   }
 
@@ -220,10 +230,8 @@ class Reorder {
     std::size_t chosen = count_;
     for (std::size_t i = 0; i < count_; ++i) {
       if (!is_ready(i)) continue;
-      if (partner != count_ &&
-          !can_pair(parts_[std::min(i, partner)].instruction, parts_[std::max(i, partner)].instruction)) {
+      if (partner != count_ && !can_pair(parts_[std::min(i, partner)], parts_[std::max(i, partner)]))
         continue;
-      }
       if (chosen == count_ || nodes_[i].height > nodes_[chosen].height) chosen = i;
     }
     return chosen;
@@ -253,9 +261,7 @@ std::vector<IssueSlot> in_program_order(const std::vector<Part>& parts, bool pai
   for (std::size_t i = 0; i < parts.size(); ++i) {
     IssueSlot& slot = slots.emplace_back();
     add(slot, parts[i]);
-    if (pairing && i + 1 < parts.size() && can_pair(parts[i].instruction, parts[i + 1].instruction)) {
-      add(slot, parts[++i]);
-    }
+    if (pairing && i + 1 < parts.size() && can_pair(parts[i], parts[i + 1])) add(slot, parts[++i]);
   }
   return slots;
 }
@@ -265,9 +271,8 @@ std::vector<IssueSlot> in_program_order(const std::vector<Part>& parts, bool pai
 std::vector<IssueSlot> issue_slots(const isa::Program& program, const Machine::Vertex& spec) {
   std::vector<Part> parts;
   for (std::size_t i = 0; i < program.instructions.size(); ++i) {
-    for (const Instruction& instruction : expanded(program.instructions[i], program.version)) {
-      parts.push_back({instruction, static_cast<int>(i)});
-    }
+    for (const Part& part : expanded(program.instructions[i], static_cast<int>(i), program.version))
+      parts.push_back(part);
   }
   return spec.driver_reorders ? Reorder(parts, spec).run() : in_program_order(parts, spec.pairing);
 }

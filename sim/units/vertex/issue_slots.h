@@ -11,9 +11,9 @@
 namespace splatscope::sim {
 
 // Register components that an instruction reads or writes: bit 4r + c is component c of temporary r, 48 is
-// a0.x.
+// a0.x, and 52 what lies between the parts of an instruction of several slots that writes an output.
 using ComponentMask = std::uint64_t;
-inline constexpr int kRegisters = 13;
+inline constexpr int kRegisters = 14;
 
 // What issues in one slot: an instruction, or a vector and a scalar one side by side.
 struct IssueSlot {

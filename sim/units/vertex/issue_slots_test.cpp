@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <tuple>
 
 namespace splatscope::sim {
@@ -81,6 +82,43 @@ TEST(IssueSlots, TheDriverKeepsEveryDependence) {
   EXPECT_LT(slot_of[2], slot_of[3]);
   EXPECT_LE(slot_of[3], slot_of[4]);
   EXPECT_LT(slot_of[4], slot_of[5]);
+}
+
+// What is written last stays.
+TEST(IssueSlots, TheDriverKeepsTheOrderOfAnOutputsWrites) {
+  const std::string start = "mov oPos, v0\nmul r1, v0, c0\nmul oD0, r1, c0\n";
+  const auto places = [&](const std::string& last) {
+    std::vector<std::size_t> slot_of(4);
+    const auto ordered = issue_slots(program(start + last), nv25());
+    for (std::size_t slot = 0; slot < ordered.size(); ++slot)
+      for (const int place : ordered[slot].instructions)
+        if (place >= 0) slot_of[static_cast<std::size_t>(place)] = slot;
+    return slot_of;
+  };
+  const auto same = places("rcp oD0.w, v0.x\n"), other = places("rcp oD1.w, v0.x\n");
+  EXPECT_LT(same[2], same[3]);
+  EXPECT_GT(other[2], other[3]) << "an independent one comes first";
+}
+
+// Each link of a chain reads what the one before has written; outputs, which cannot be read, are written by
+// the last.
+TEST(IssueSlots, ChainsThatEndInAnOutputAreChains) {
+  for (const std::string name : {"exp", "log", "frc"}) {
+    const std::string mask = name == "frc" ? ".xy" : "";
+    const auto direct = issue_slots(program(name + " oT0" + mask + ", v0\n"), plain());
+    const auto through = issue_slots(program(name + " r0" + mask + ", v0\n"), plain());
+    ASSERT_EQ(direct.size(), through.size()) << name;
+    for (const auto* slots : {&direct, &through})
+      for (std::size_t i = 1; i < slots->size(); ++i)
+        EXPECT_EQ((*slots)[i].reads, (*slots)[i - 1].scalar_writes | (*slots)[i - 1].vector_writes) << name;
+    EXPECT_NE(direct[0].scalar_writes, 0u) << name;
+    EXPECT_EQ(direct.back().vector_writes, 0u) << name;
+  }
+}
+
+TEST(IssueSlots, AChainReadsWhatItsInstructionReads) {
+  EXPECT_EQ(issue_slots(program("frc r2.xy, r1\n"), plain())[0].reads, 0x30u);
+  EXPECT_EQ(issue_slots(program("exp r2, r1.z\n"), plain())[0].reads, 0x40u);
 }
 
 TEST(IssueSlots, MacrosTakeTheirSlots) {
