@@ -109,7 +109,8 @@ Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Su
   };
   const Machine& m = machine_;
   clocks[kSetup] = through(pieces * m.setup.clocks_per_triangle, pieces, m.setup.latency, m.setup.queue);
-  clocks[kRaster] = through(clocks[kRaster], quads, m.raster.latency, m.raster.queue);
+  if (uses_depth(*job.draw) || job.draw->state.color_write)
+    clocks[kRaster] = through(clocks[kRaster], quads, m.raster.latency, m.raster.queue);
   if (uses_depth(*job.draw)) clocks[kDepth] = through(quads / width, colored, m.depth.latency, m.depth.queue);
   if (job.textured)
     clocks[kTexture] =

@@ -216,6 +216,18 @@ TEST(Throughput, UnitsThatADrawGoesPastAreNotBusyWithIt) {
   EXPECT_EQ(std::ranges::find(estimate.units, "depth", &UnitBooks::name)->busy, 0u);
 }
 
+// Quads that neither depth nor colour takes end in the rasteriser: they wait for no place behind it.
+TEST(Throughput, QuadsThatNothingTakesHoldNoQueue) {
+  RandomTrace made = plain();
+  DrawState& state = std::get<Draw>(made.trace.commands[1]).state;
+  state.depth_test = state.depth_write = state.color_write = false;
+  Machine machine = machine::load(machine::kGeForce4);
+  for (const char* setting : {"raster.latency=256", "raster.queue=1"}) machine::assign(machine, setting);
+  const auto estimate = static_cast<double>(estimate_throughput(made.trace, made.work, machine).cycles);
+  const auto simulated = static_cast<double>(simulate(made.trace, made.work, machine).cycles);
+  EXPECT_NEAR(estimate / simulated, 1, 0.05);
+}
+
 // Where no draw uses depth there is none to clear. The simulation has the latency of its writes besides.
 TEST(Throughput, ClearsTheBuffersThatTheSimulationClears) {
   Machine machine = machine::load(machine::kGeForce4);
