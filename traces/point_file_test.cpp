@@ -276,6 +276,19 @@ TEST_F(PointFileTest, SurfelsThatCannotBeDrawnAreCounted) {
   EXPECT_EQ(more.surfels[0].normal, glm::vec3(1, 0, 0));
 }
 
+// Nothing is estimated then.
+TEST_F(PointFileTest, NeighboursBesideRadiiAndNormalsAreRefused) {
+  const std::string row = "0 0 0  0 0 1   1  0 0 0\n";
+  EXPECT_EQ(
+      folder_.error_of([&] { scene_of(with_normals_and_radii(row, 1), "neighbours = 9\n"); }),
+      "s.toml:3: surfels.neighbours beside a file that has radii and normals, expected it removed, or a "
+      "file without one of them");
+  EXPECT_EQ(folder_.error_of([&] { scene_of(with_normals_and_radii(row, 1), "neighbours = 8\n"); }),
+            "no error")
+      << "its default";
+  EXPECT_EQ(folder_.error_of([&] { scene_of(kAscii, "neighbours = 9\n"); }), "no error");
+}
+
 // Neither for the camera nor for the radii of others.
 TEST_F(PointFileTest, SurfelsWithoutANormalCountForNothing) {
   const auto scene = [&](int count, const std::string& rows) {

@@ -41,9 +41,11 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file,
   if (scene.hierarchy.culling == Culling::automatic)
     scene.hierarchy.culling = plane ? Culling::none : Culling::blocks;
   const SurfelSource& source = settings.surfels;
-  if (!source.file.empty() && !is_mesh_file(file.parent_path() / source.file))
-    check_points(settings, file.string());
+  const bool points = !source.file.empty() && !is_mesh_file(file.parent_path() / source.file);
+  if (points) check_points(settings, file.string());
   Surfels surfels = make_surfels(settings, file.parent_path(), progress);
+  if (points && !surfels.surfels.empty() && surfels.estimated.normals + surfels.estimated.radii == 0)
+    check_complete_points(settings, file.string());
   scene.surfels = std::move(surfels.surfels);
   scene.skipped = surfels.skipped;
   scene.estimated = surfels.estimated;

@@ -330,6 +330,14 @@ void check_points(const SceneSettings& settings, std::string_view file) {
   check_source(settings, file, kFromPoints);
 }
 
+void check_complete_points(const SceneSettings& settings, std::string_view file) {
+  if (settings.surfels.neighbours == default_settings().surfels.neighbours) return;
+  throw UserError(
+      file, settings.line_of({"surfels.neighbours"}),
+      "surfels.neighbours beside a file that has radii and normals, expected it removed, or a file "
+      "without one of them");
+}
+
 void check_camera(const SceneSettings& settings, std::string_view file) {
   const Camera& c = settings.camera;
   const glm::dvec3 view = c.target - c.eye;

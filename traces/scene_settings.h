@@ -20,6 +20,9 @@ std::vector<NamedFile> files_named(const SceneSettings& settings, const std::fil
 // Throws UserError.
 void check_points(const SceneSettings& settings, std::string_view file);
 
+// That no key tells how to estimate what the points of their file have. Throws UserError.
+void check_complete_points(const SceneSettings& settings, std::string_view file);
+
 // That the settings' camera can see something: what no single key can tell, and what is known only when a
 // camera that a scene leaves open was made to frame its surfels. (parse_settings has checked the plane's.)
 // Throws UserError.
