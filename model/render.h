@@ -23,6 +23,7 @@ struct RenderOptions {
   NumberFormats formats;
   int vertex_cache_entries = 18;  // post-transform FIFO; a vertex still in it is not shaded again
   Record record = Record::everything;
+  bool operator==(const RenderOptions&) const = default;
 };
 
 // As `machine` draws.

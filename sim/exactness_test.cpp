@@ -8,8 +8,11 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
+#include "model/machine/parameters.h"
 #include "sim/simulate.h"
 #include "sim/testing/random_trace.h"
 #include "sim/testing/shrink.h"
@@ -150,6 +153,23 @@ RC_GTEST_PROP(Exactness, TheRefereeAgreesWithSkipAheadInEveryEventAndEveryBook, 
 }
 
 // As a bug behind a queue that takes some filling would.
+// A parameter that is always the same would never be tested.
+TEST(Exactness, EveryParameterThatTellsTheTimeIsDrawn) {
+  const auto value_of = [](const machine::Parameter& parameter, const Machine& machine) {
+    return std::visit([&](const auto& field) { return static_cast<double>(field.get(machine)); },
+                      parameter.field);
+  };
+  constexpr std::string_view kOfTheWork = "vertex.cache_entries";  // which the random work has decided
+  std::vector<Machine> machines;
+  for (unsigned seed = 0; seed < 200; ++seed) machines.push_back(RandomMaker(seed).machine());
+  for (const machine::Parameter& parameter : machine::parameters()) {
+    if (parameter.name.starts_with("numbers.") || parameter.name == kOfTheWork) continue;
+    EXPECT_TRUE(std::ranges::any_of(machines, [&](const Machine& machine) {
+      return value_of(parameter, machine) != value_of(parameter, machines[0]);
+    })) << parameter.name;
+  }
+}
+
 TEST(Exactness, AFailureShrinksToWhatItTakes) {
   const auto quads = [](const Case& drawn) {
     std::size_t passed = 0;

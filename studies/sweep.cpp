@@ -76,10 +76,8 @@ std::vector<Group> group(const Machine& machine, const std::vector<SweepPoint>& 
   std::vector<Group> groups;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Machine changed = machine_of(machine, points[i]);
-    const auto same = std::ranges::find_if(groups, [&](const Group& g) {
-      return g.machine.numbers == changed.numbers &&
-             g.machine.vertex.cache_entries == changed.vertex.cache_entries;
-    });
+    const auto same = std::ranges::find_if(
+        groups, [&](const Group& g) { return render_options(g.machine) == render_options(changed); });
     if (same != groups.end()) {
       same->points.push_back(i);
     } else {

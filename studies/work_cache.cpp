@@ -223,10 +223,11 @@ std::string work_key(const Trace& trace, const RenderOptions& options) {
   if (program.empty() || program.size() != std::filesystem::file_size(kProgram, error))
     throw UserError(kProgram, 0, "cannot be read, expected this program, whose work is kept by its bytes");
   // All of them by name: one more does not compile until it is here too.
+  const auto& [formats, vertex_cache_entries, record] = options;
   const auto& [arithmetic, color, combiner, frame, rounding, depth, subpixel_bits, filter_bits,
-               reciprocal_bits] = options.formats;
+               reciprocal_bits] = formats;
   for (const int value : {int(arithmetic), int(color), int(combiner), int(frame), int(rounding), int(depth),
-                          subpixel_bits, filter_bits, reciprocal_bits, options.vertex_cache_entries})
+                          subpixel_bits, filter_bits, reciprocal_bits, vertex_cache_entries, int(record)})
     text.add(value);
   std::string key;
   for (std::uint64_t seed = 0; seed < 2; ++seed) {

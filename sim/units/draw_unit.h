@@ -5,6 +5,7 @@
 #include <span>
 
 #include "model/command/commands.h"
+#include "model/error.h"
 #include "model/work/work.h"
 #include "sim/kernel/channel.h"
 
@@ -91,6 +92,7 @@ class DrawUnit : public Unit {
   bool has_work() const { return remaining_ != 0; }
   // `last`: the last cycle that the item takes of the unit, this one or a later one.
   void item_done(Cycle last) {
+    if (remaining_ == 0) throw ModelError(name() + " has an item of no draw that it has begun");
     if (--remaining_ == 0) completion_.finish(last);
   }
   // Before item `number` is taken: pass(cut) for each cut before it that was not met yet. `first_after`:
