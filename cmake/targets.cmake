@@ -14,7 +14,7 @@ target_compile_options(splatscope_options INTERFACE -Wall -Wextra -Wconversion -
 if(SPLATSCOPE_SANITIZE)
   set(sanitizers ${SPLATSCOPE_SANITIZE})
   if(SPLATSCOPE_SANITIZE STREQUAL address)
-    set(sanitizers address,undefined)
+    set(sanitizers address,undefined,float-cast-overflow)  # the last is in no group of GCC
   endif()
   target_compile_options(splatscope_options INTERFACE -fsanitize=${sanitizers} -fno-sanitize-recover=all
                                                      -fno-omit-frame-pointer -g1)

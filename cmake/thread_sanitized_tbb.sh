@@ -2,7 +2,7 @@
 # Builds Debian's oneTBB with the thread sanitizer, which sees no order in what a library does that it did not compile: its
 # tasks would all be races. thread_sanitized_tbb.sh FOLDER; prints the folder of the shared library.
 set -euo pipefail
-folder=$1
+folder=$(realpath -m "$1")  # apt takes a relative one below folders of its own
 built="$folder/built"
 if [ ! -e "$built" ]; then
   rm -rf "$folder" && mkdir -p "$folder/parts" "$folder/lists"
