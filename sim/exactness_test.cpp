@@ -152,7 +152,6 @@ RC_GTEST_PROP(Exactness, TheRefereeAgreesWithSkipAheadInEveryEventAndEveryBook, 
   RC_FAIL("at smallest: " + smallest.str());
 }
 
-// As a bug behind a queue that takes some filling would.
 // A parameter that is always the same would never be tested.
 TEST(Exactness, EveryParameterThatTellsTheTimeIsDrawn) {
   const auto value_of = [](const machine::Parameter& parameter, const Machine& machine) {
@@ -170,6 +169,7 @@ TEST(Exactness, EveryParameterThatTellsTheTimeIsDrawn) {
   }
 }
 
+// As a bug behind a queue that takes some filling would.
 TEST(Exactness, AFailureShrinksToWhatItTakes) {
   const auto quads = [](const Case& drawn) {
     std::size_t passed = 0;

@@ -307,7 +307,6 @@ TEST(Recorder, DrawsFromAfarByEveryProgram) {
                   "far.toml"));
 }
 
-// A surfel is too large by its pixels, not by what the near plane would make of it.
 // A scene in another unit of length is the same picture, also where the programs of fewer slots would lose
 // the depth in what floats lose of 1 - 1/near. The paper's needs no unit of its own.
 TEST(Recorder, TheUnitOfLengthChangesNothing) {
@@ -330,6 +329,7 @@ TEST(Recorder, TheUnitOfLengthChangesNothing) {
   }
 }
 
+// A surfel is too large by its pixels, not by what the near plane would make of it.
 TEST(Recorder, ANearPlaneNextToTheEyeMakesNoSurfelSmaller) {
   Scene scene = parse_scene(
       "[surfels]\ncolumns = 32\nrows = 32\n[camera]\neye = [0, 100, 100]\ntarget = [0, 0, 0]\n"

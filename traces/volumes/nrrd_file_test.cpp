@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <random>
 #include <string>
 
 #include "model/error.h"
+#include "model/testing/append_bytes.h"
 #include "model/testing/scratch_folder.h"
 
 namespace splatscope::traces {
@@ -35,12 +35,7 @@ std::string header(const std::string& type, const std::string& sizes, const std:
 template <class Value>
 std::string bytes_of_values(std::initializer_list<Value> values, bool swap = false) {
   std::string bytes;
-  for (const Value value : values) {
-    char text[sizeof(Value)];
-    std::memcpy(text, &value, sizeof(Value));
-    if (swap) std::reverse(text, text + sizeof(Value));
-    bytes.append(text, sizeof(Value));
-  }
+  for (const Value value : values) append_bytes(bytes, value, swap);
   return bytes;
 }
 
@@ -63,25 +58,17 @@ TEST_F(NrrdFile, ReadsEachTypeInEitherOrderOfBytes) {
             (std::vector<float>{0.25f}));
 }
 
-// Its least and its largest value, which a type of another size or without a sign would tell apart.
 TEST_F(NrrdFile, ReadsTheEndsOfEachWholeType) {
-  const auto expect_ends = [&]<class Value>(const std::string& name, Value) {
-    using Limits = std::numeric_limits<Value>;
+  on_each_whole_type([&]<class Value>(const std::string& name, const char*, Value least, Value most) {
     for (const bool big : {false, true}) {
       std::string text = header(name, "2 1 1");
       if (big) text.replace(text.find("little"), 6, "big");
-      text += bytes_of_values<Value>({Limits::min(), Limits::max()}, big);
+      text += bytes_of_values<Value>({least, most}, big);
       EXPECT_EQ(read_nrrd(write("a.nrrd", text)).values,
-                (std::vector<float>{static_cast<float>(Limits::min()), static_cast<float>(Limits::max())}))
+                (std::vector<float>{static_cast<float>(least), static_cast<float>(most)}))
           << name;
     }
-  };
-  expect_ends("int8", std::int8_t{});
-  expect_ends("uint8", std::uint8_t{});
-  expect_ends("int16", std::int16_t{});
-  expect_ends("uint16", std::uint16_t{});
-  expect_ends("int32", std::int32_t{});
-  expect_ends("uint32", std::uint32_t{});
+  });
 }
 
 TEST_F(NrrdFile, ReadsRawDataBesideAHeader) {

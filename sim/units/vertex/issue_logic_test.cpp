@@ -48,8 +48,6 @@ Ends ends_of(const std::string& text, const Machine::Vertex& spec, std::size_t c
   return ends;
 }
 
-// The threads issue in turn: 0 1 2, 0 1 2, ... then nothing in cycle 12, as thread 0 issued last in 9 and is
-// reloaded in 10, 11 and 12.
 TEST(IssueLogic, RefusesLatenciesThatItCannotCount) {
   Machine::Vertex spec = unit_of(1, 254);
   const std::vector<IssueSlot> slots = issue_slots(program_of(kTransform), spec);
@@ -58,6 +56,8 @@ TEST(IssueLogic, RefusesLatenciesThatItCannotCount) {
   EXPECT_THROW(IssueLogic(slots, spec), ModelError);
 }
 
+// The threads issue in turn: 0 1 2, 0 1 2, ... then nothing in cycle 12, as thread 0 issued last in 9 and is
+// reloaded in 10, 11 and 12.
 TEST(IssueLogic, ThreeThreadsOfFourSlotsTakeTurns) {
   EXPECT_EQ(ends_of(kTransform, unit_of(3, 3), 6),
             (Ends{{9, 0}, {10, 1}, {11, 2}, {22, 0}, {23, 1}, {24, 2}}));

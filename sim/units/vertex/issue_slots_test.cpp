@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <vector>
 
 namespace splatscope::sim {
 namespace {
@@ -26,6 +28,17 @@ Machine::Vertex nv25() {
 std::size_t slots(std::string_view body, Machine::Vertex spec) {
   spec.pairing = true;
   return issue_slots(program(body), spec).size();
+}
+
+// The slot of each instruction of a program, by its place.
+std::vector<std::size_t> slots_by_place(std::string_view body, const Machine::Vertex& spec) {
+  const Program text = program(body);
+  std::vector<std::size_t> slot_of(text.instructions.size());
+  const auto ordered = issue_slots(text, spec);
+  for (std::size_t slot = 0; slot < ordered.size(); ++slot)
+    for (const int place : ordered[slot].instructions)
+      if (place >= 0) slot_of[static_cast<std::size_t>(place)] = slot;
+  return slot_of;
 }
 
 TEST(IssueSlots, AVectorAndAScalarInstructionPair) {
@@ -66,17 +79,9 @@ TEST(IssueSlots, TheDriverBringsIndependentInstructionsTogether) {
 }
 
 TEST(IssueSlots, TheDriverKeepsEveryDependence) {
-  Machine::Vertex spec = nv25();
   // r0 is written, read, written again and read again: the two lives must not mix.
-  const auto ordered = issue_slots(
-      program("mov r0, v0\nmul r1, r0, c0\nrcp r0.x, v0.x\nmul r2, r1, r0.x\nmov r1, v0\nmul oD0, r1, r2\n"),
-      spec);
-  std::vector<std::size_t> slot_of(6);
-  for (std::size_t slot = 0; slot < ordered.size(); ++slot) {
-    for (const int place : ordered[slot].instructions) {
-      if (place >= 0) slot_of[static_cast<std::size_t>(place)] = slot;
-    }
-  }
+  const auto slot_of = slots_by_place(
+      "mov r0, v0\nmul r1, r0, c0\nrcp r0.x, v0.x\nmul r2, r1, r0.x\nmov r1, v0\nmul oD0, r1, r2\n", nv25());
   EXPECT_LT(slot_of[0], slot_of[1]);
   EXPECT_LE(slot_of[1], slot_of[2]);  // may share a slot: operands are read before results are written
   EXPECT_LT(slot_of[2], slot_of[3]);
@@ -87,15 +92,8 @@ TEST(IssueSlots, TheDriverKeepsEveryDependence) {
 // What is written last stays.
 TEST(IssueSlots, TheDriverKeepsTheOrderOfAnOutputsWrites) {
   const std::string start = "mov oPos, v0\nmul r1, v0, c0\nmul oD0, r1, c0\n";
-  const auto places = [&](const std::string& last) {
-    std::vector<std::size_t> slot_of(4);
-    const auto ordered = issue_slots(program(start + last), nv25());
-    for (std::size_t slot = 0; slot < ordered.size(); ++slot)
-      for (const int place : ordered[slot].instructions)
-        if (place >= 0) slot_of[static_cast<std::size_t>(place)] = slot;
-    return slot_of;
-  };
-  const auto same = places("rcp oD0.w, v0.x\n"), other = places("rcp oD1.w, v0.x\n");
+  const auto same = slots_by_place(start + "rcp oD0.w, v0.x\n", nv25()),
+             other = slots_by_place(start + "rcp oD1.w, v0.x\n", nv25());
   EXPECT_LT(same[2], same[3]);
   EXPECT_GT(other[2], other[3]) << "an independent one comes first";
 }
