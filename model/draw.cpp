@@ -28,9 +28,8 @@ constexpr std::size_t kBatchesAThread = 2;
 // turn to be written.
 constexpr std::int64_t kMostPixelsKept = 1 << 18;
 
-// For which a record has room from the start. Most splats cover fewer, and what is not touched takes no
-// memory; records that grow are copied into memory that the system has to clear.
-constexpr std::size_t kQuadsATriangle = 8, kMostTrianglesAhead = 1 << 16;
+// Of a batch that is not kept, a part of its record is given away as soon as it holds so many quads.
+constexpr std::size_t kQuadsAPart = 1 << 14;
 
 // Windows of one piece of a triangle in one band.
 struct Band {
@@ -43,31 +42,24 @@ using Windows = std::span<raster::Window, raster::kMaxWindows>;
 
 // A draw on its way, of which batches are in flight.
 struct DrawInFlight {
-  DrawInFlight(DrawTask task, Frame& target, Record record)
+  DrawInFlight(DrawTask task, Frame& target, Record noted)
       : bindings(task.bindings),
         frame(target),
-        work(std::move(task.work)),
+        record(std::move(task.work)),
         depth{target.depth,
               {target.width, target.height},
               target.formats.depth,
               bindings.draw.state.depth_test,
               bindings.draw.state.depth_write} {
-    if (record == Record::nothing) return;
-    work.samples_only = record == Record::samples;
-    const std::size_t triangles = bindings.draw.index_count / 3;
-    work.triangles.reserve(triangles);
-    if (record == Record::everything) {
-      work.shaded_vertices.reserve(2 * triangles);
-      const std::size_t quads = kQuadsATriangle * std::min(triangles, kMostTrianglesAhead);
-      work.quads.reserve(quads);
-      work.texel_blocks.reserve(quads);
-    }
+    if (noted == Record::nothing) return;
+    record.samples_only = noted == Record::samples;
     if (uses_depth(bindings.draw)) clear_tiles.emplace(target);
   }
 
   DrawBindings bindings;
   Frame& frame;
-  DrawWork work;
+  DrawWork record;            // what is the same in each part of it
+  std::size_t triangles = 0;  // rasterised so far
   raster::DepthTarget depth;
   std::optional<ClearTiles> clear_tiles;  // where depth is recorded
 };
@@ -80,22 +72,32 @@ class Batch {
         pipe(geometry.attributes(), width, options.formats,
              [this](const auto& colors, auto pixels) { take(colors, pixels); }) {}
 
-  // `alone`: no other batch is in flight, so its work needs not wait for its turn.
-  void bind(std::shared_ptr<DrawInFlight> next, bool alone) {
+  void bind(std::shared_ptr<DrawInFlight> next) {
     geometry.bind(next->bindings);
     pipe.bind(next->bindings);
     draw = std::move(next);  // after these: they look at the one before
-    work = alone ? &draw->work : &own_work;
     packs_ = output::packs(state(), draw->frame.formats);
   }
 
   void begin(bool write_at_once) {
     at_once = write_at_once;
-    own_work.quads.clear();  // and keep their memory
-    own_work.texel_blocks.clear();
+    vertices_given_ = 0;
+    begin_part();
     window_count_ = 0;
     bands.clear();
     pixels_.clear();
+  }
+
+  // Gives away what is noted, if there is something; a draw of nothing gives that.
+  void give_part(const DrawPipeline::Done& done) {
+    if (part.triangles.empty() && draw->bindings.draw.index_count != 0) return;
+    if (!part.samples_only) {
+      const auto first = geometry.shaded_vertices.begin() + vertices_given_;
+      for (const TriangleWork& triangle : part.triangles) vertices_given_ += triangle.new_vertices;
+      part.shaded_vertices.assign(first, geometry.shaded_vertices.begin() + vertices_given_);
+    }
+    done(part);
+    begin_part();
   }
 
   // Room for the windows of one band; they are kept once it is added.
@@ -123,15 +125,25 @@ class Batch {
   const DrawState& state() const { return draw->bindings.draw.state; }
 
   std::shared_ptr<DrawInFlight> draw;
-  bool last = false;  // of its draw
   GeometryBatch geometry;
-  DrawWork own_work;
-  DrawWork* work = nullptr;  // where its own goes
+  DrawWork part;  // of the draw's record: what is noted and not given away
   FragmentPipe pipe;
   bool at_once = false;  // depth, shading and writing together, when its turn to be written comes
   std::vector<Band> bands;
 
  private:
+  void begin_part() {
+    const DrawWork& record = draw->record;
+    part.command = record.command;
+    part.sampled_runs_apart = record.sampled_runs_apart;
+    part.samples_only = record.samples_only;
+    part.shaded_vertices.clear();  // and keep their memory
+    part.triangles.clear();
+    part.quads.clear();
+    part.texel_blocks.clear();
+    part.clear_tiles.clear();
+  }
+
   void take(const FragmentPipe::Colors& colors, std::span<const std::uint32_t> pixels) {
     if (at_once) return output::write_colors(colors, pixels, state(), draw->frame);
     const std::size_t first = pixels_.size();
@@ -144,6 +156,7 @@ class Batch {
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(colors[c], pixels.size(), room(colors_[c]));
   }
 
+  std::ptrdiff_t vertices_given_ = 0;    // of the shaded ones
   std::vector<raster::Window> windows_;  // of all bands
   std::size_t window_count_ = 0;
   // What is shaded and waits to be written, in order: each fragment's pixel, and its colour in one form.
@@ -159,6 +172,9 @@ class LaterStages {
  public:
   LaterStages(Record record, RenderCounters& counters) : record_(record), counters_(counters) {}
 
+  // `done` takes what is noted from now on.
+  void begin(const DrawPipeline::Done& done) { done_ = &done; }
+
   // One batch at a time.
   void test_depth(Batch& batch) {
     // Behind one whose depth is still to be tested all have to wait with theirs.
@@ -169,7 +185,7 @@ class LaterStages {
       return;
     }
     rasterize(
-        batch, [&] { return batch.room(); }, [&](const Band& band) { batch.add(band); });
+        batch, [&] { return batch.room(); }, [&](const Band& band) { batch.add(band); }, [] {});
   }
 
   // Any number of batches at a time.
@@ -191,26 +207,37 @@ class LaterStages {
     } else {
       batch.write();
     }
-    append(batch);
+    give_part(batch);
   }
 
   // All of it, where there is but one thread.
   void test_shade_and_write(Batch& batch) {
     batch.begin(true);
     do_at_once(batch);
-    append(batch);
+    give_part(batch);
   }
 
  private:
   static void push(Batch& batch, const Band& band, std::span<const raster::Window> windows) {
-    batch.pipe.push_band(batch.geometry.piece(band.piece), windows, band.noted ? batch.work : nullptr);
+    batch.pipe.push_band(batch.geometry.piece(band.piece), windows, band.noted ? &batch.part : nullptr);
   }
 
   void do_at_once(Batch& batch) {
     rasterize(
         batch, [&] { return Windows(windows_); },
-        [&](const Band& band) { push(batch, band, std::span(windows_).first(band.count)); });
+        [&](const Band& band) { push(batch, band, std::span(windows_).first(band.count)); },
+        [&] {
+          if (batch.part.quads.size() < kQuadsAPart) return;
+          batch.pipe.flush();
+          give_part(batch);
+        });
     batch.pipe.flush();
+  }
+
+  // Who takes it may use oneTBB too, and is not to take up other stages while it waits there.
+  void give_part(Batch& batch) const {
+    if (record_ == Record::nothing) return;
+    tbb::this_task_arena::isolate([&] { batch.give_part(*done_); });
   }
 
   // Whether the draw's cull mode drops a piece. What decides is the sign on the grid that decides coverage,
@@ -228,9 +255,9 @@ class LaterStages {
   }
 
   // Coverage and depth; take(band) gets each band in which there is something to shade or to note, with its
-  // windows in the room() that was asked for last.
-  template <typename Room, typename Take>
-  void rasterize(Batch& batch, Room room, Take take) {
+  // windows in the room() that was asked for last. behind() is called behind each triangle.
+  template <typename Room, typename Take, typename Behind>
+  void rasterize(Batch& batch, Room room, Take take, Behind behind) {
     counters_.vertices += batch.geometry.shaded_vertices.size();
     counters_.triangles += batch.geometry.triangles.size();
     std::size_t first = 0;
@@ -244,23 +271,26 @@ class LaterStages {
         const raster::TriangleSetup& setup = batch.geometry.setup(piece);
         if (culled(setup, batch.state().cull)) continue;
         ++work.pieces;
-        rasterize(*batch.draw, piece, setup, work, room, take);
+        rasterize(batch, piece, setup, work, room, take);
       }
       first += triangle.pieces;
       if (work.pieces == 0 && triangle.pieces != 0) work.outcome = TriangleOutcome::back_facing;
       if (work.outcome == TriangleOutcome::drawn && work.quad_count == 0)
         work.outcome = TriangleOutcome::no_coverage;
       count(work);
-      if (record_ != Record::nothing) batch.draw->work.triangles.push_back(work);
+      ++batch.draw->triangles;
+      if (record_ == Record::nothing) continue;
+      batch.part.triangles.push_back(work);
+      behind();
     }
   }
 
   template <typename Room, typename Take>
-  void rasterize(DrawInFlight& draw, std::size_t piece, const raster::TriangleSetup& setup,
-                 TriangleWork& work, Room room, Take take) {
+  void rasterize(Batch& batch, std::size_t piece, const raster::TriangleSetup& setup, TriangleWork& work,
+                 Room room, Take take) {
     if (!setup.covers) return;
-    const std::size_t triangle = draw.work.triangles.size();
-    const bool sampled = record_ != Record::nothing && draw.work.is_sampled(triangle);
+    DrawInFlight& draw = *batch.draw;
+    const bool sampled = record_ != Record::nothing && draw.record.is_sampled(draw.triangles);
     const bool noted = sampled || record_ == Record::everything;
     ClearTiles* const clear_tiles = sampled && draw.clear_tiles ? &*draw.clear_tiles : nullptr;
     if (record_ != Record::nothing) work.tile_count += raster::tiles_touched(setup);
@@ -273,8 +303,8 @@ class LaterStages {
       work.quad_count += counts.quads;
       work.quads_passed += counts.quads_passed;
       if (clear_tiles != nullptr)
-        clear_tiles->note(windows.first(counts.windows), static_cast<std::uint32_t>(triangle),
-                          draw.work.clear_tiles);
+        clear_tiles->note(windows.first(counts.windows), static_cast<std::uint32_t>(draw.triangles),
+                          batch.part.clear_tiles);
       if (noted ? counts.windows != 0 : draw.bindings.draw.state.color_write && counts.passed != 0)
         take(Band{piece, noted, counts.windows});
     }
@@ -291,17 +321,9 @@ class LaterStages {
     counters_.triangles_back_facing += work.outcome == TriangleOutcome::back_facing;
   }
 
-  void append(const Batch& batch) {
-    DrawWork& work = batch.draw->work;
-    const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
-    if (record_ == Record::everything) behind(work.shaded_vertices, batch.geometry.shaded_vertices);
-    if (batch.work == &work) return;
-    behind(work.quads, batch.own_work.quads);
-    behind(work.texel_blocks, batch.own_work.texel_blocks);
-  }
-
   Record record_;
   RenderCounters& counters_;
+  const DrawPipeline::Done* done_ = nullptr;
   std::array<raster::Window, raster::kMaxWindows> windows_;
   std::atomic<int> waiting_ = 0;  // batches whose depth is tested when they are written
 };
@@ -325,49 +347,42 @@ class DrawPipeline::State {
 
   void run(Frame& frame, const Next& next, const Done& done) {
     draw_ = nullptr;
+    stages_.begin(done);
     const std::size_t threads = thread_count(), batches = threads > 1 ? kBatchesAThread * threads : 1;
     while (batches_.size() < batches) batches_.push_back(std::make_unique<Batch>(options_, width_, height_));
-    threads > 1 ? run_in_flight(batches, frame, next, done) : run_one_by_one(frame, next, done);
+    threads > 1 ? run_in_flight(batches, frame, next) : run_one_by_one(frame, next);
   }
 
  private:
   // False: no draw is left. Each has a batch at least.
-  bool fill(Batch& batch, bool alone, Frame& frame, const Next& next) {
+  bool fill(Batch& batch, Frame& frame, const Next& next) {
     if (draw_ == nullptr) {
       std::optional<DrawTask> task = next();
       if (!task) return false;
       draw_ = std::make_shared<DrawInFlight>(std::move(*task), frame, options_.record);
       indices_.begin(draw_->bindings);
     }
-    if (batch.draw != draw_) batch.bind(draw_, alone);
-    batch.last = !indices_.fill(batch.geometry);
-    if (batch.last) draw_ = nullptr;
+    if (batch.draw != draw_) batch.bind(draw_);
+    if (!indices_.fill(batch.geometry)) draw_ = nullptr;
     return true;
   }
 
-  // `done` may use oneTBB too; it is not to take up other stages while it waits there.
-  void end(Batch& batch, const Done& done) const {
-    if (!batch.last || options_.record == Record::nothing) return;
-    tbb::this_task_arena::isolate([&] { done(std::move(batch.draw->work)); });
-  }
-
-  void run_one_by_one(Frame& frame, const Next& next, const Done& done) {
+  void run_one_by_one(Frame& frame, const Next& next) {
     Batch& only = *batches_[0];
-    while (fill(only, true, frame, next)) {
+    while (fill(only, frame, next)) {
       only.geometry.process();
       stages_.test_shade_and_write(only);
-      end(only, done);
     }
   }
 
   // Several batches at once, each in one stage.
-  void run_in_flight(std::size_t batches, Frame& frame, const Next& next, const Done& done) {
+  void run_in_flight(std::size_t batches, Frame& frame, const Next& next) {
     using tbb::filter_mode;
     std::size_t filled = 0;
     const auto fill_next = [&](tbb::flow_control& control) -> Batch* {
       Batch& next_batch = *batches_[filled++ % batches];
       next_batch.take_again();
-      if (fill(next_batch, false, frame, next)) return &next_batch;
+      if (fill(next_batch, frame, next)) return &next_batch;
       next_batch.hand_back();
       control.stop();
       return nullptr;
@@ -385,7 +400,6 @@ class DrawPipeline::State {
                      stage(filter_mode::parallel, [](Batch& batch) { LaterStages::shade(batch); }) &
                      tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
                        stages_.write(*batch);
-                       end(*batch, done);
                        batch->hand_back();
                      }));
   }

@@ -41,8 +41,9 @@ class DrawPipeline {
 
   // Gives the next draw, or none.
   using Next = std::function<std::optional<DrawTask>()>;
-  // Takes what a draw did, where it is noted, when all of the draw is done.
-  using Done = std::function<void(DrawWork)>;
+  // Takes what some triangles of a draw did, where it is noted, when they are done. It may leave another
+  // record in place of the one that it is given, whose memory is then used again.
+  using Done = std::function<void(DrawWork& part)>;
 
   // Draws on `frame`, one draw behind the other. While one is still drawn the next is begun, so none may
   // sample a frame that another one writes. `next` and `done` are each called in the order of the draws, from

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -126,6 +127,31 @@ TEST(DrawPipeline, DrawsInFlightTogetherDrawWhatEachDrawsAlone) {
       for (const std::size_t threads : {1u, 2u, 4u})
         expect_same(expected, render_on(together, threads, record), record == Record::everything);
     }
+  }
+}
+
+// Put together, parts are what the draw did; none is much larger than one of its triangles, however many
+// these are.
+TEST(DrawPipeline, PartsOfADrawAreFewOfItsTriangles) {
+  const Trace trace = testing::rectangles(256, 40);
+  const Rendered whole = render(trace, {});
+  ASSERT_EQ(whole.work.size(), 1u);
+  ASSERT_EQ(whole.work[0].quads.size(), 40u * (128 * 128 + 128));  // those of the diagonal twice
+  for (const std::size_t threads : {1u, 2u, 4u}) {
+    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    DrawWork all;
+    std::size_t most = 0;
+    const Rendered rendered = render_in_parts(trace, {}, {}, {}, [&](DrawWork& part) {
+      most = std::max(most, part.quads.size());
+      const auto behind = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
+      behind(all.shaded_vertices, part.shaded_vertices);
+      behind(all.triangles, part.triangles);
+      behind(all.quads, part.quads);
+      behind(all.clear_tiles, part.clear_tiles);
+    });
+    expect_same_work(whole.work[0], all);
+    EXPECT_EQ(rendered.frame, whole.frame);
+    EXPECT_LT(most, 2u * 128 * 128);
   }
 }
 

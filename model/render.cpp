@@ -1,5 +1,6 @@
 #include "model/render.h"
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
@@ -85,12 +86,12 @@ class Programs {
 // Does commands on the resources of a trace, one after the other.
 class Renderer {
  public:
-  // `on_work` takes the work of each draw; `progress` is told how many commands are begun.
-  Renderer(const Trace& trace, const RenderOptions& options, Rendered& rendered,
-           std::function<void(DrawWork)> on_work, std::function<void(std::size_t)> progress)
+  // `on_part` takes the work of the draws; `progress` is told how many commands are begun.
+  Renderer(const Trace& trace, const RenderOptions& options, Rendered& rendered, DrawPipeline::Done on_part,
+           std::function<void(std::size_t)> progress)
       : trace_(trace),
         rendered_(rendered),
-        on_work_(std::move(on_work)),
+        on_part_(std::move(on_part)),
         progress_(std::move(progress)),
         programs_(trace, options.formats),
         pipeline_(options, trace.width, trace.height, rendered.counters) {
@@ -140,7 +141,7 @@ class Renderer {
       if (draw == nullptr || draw->target != first.target) return std::nullopt;
       return next_draw(*draw);
     };
-    pipeline_.run(target(first.target), next_draw_on_it, on_work_);
+    pipeline_.run(target(first.target), next_draw_on_it, on_part_);
   }
 
   DrawTask next_draw(const Draw& draw) {
@@ -165,7 +166,7 @@ class Renderer {
 
   const Trace& trace_;
   Rendered& rendered_;
-  std::function<void(DrawWork)> on_work_;
+  DrawPipeline::Done on_part_;
   std::function<void(std::size_t)> progress_;
   std::vector<Frame> surfaces_;  // off-screen
   Programs programs_;
@@ -173,6 +174,51 @@ class Renderer {
   std::span<const Command> commands_;  // of the frame
   std::size_t first_ = 0, next_ = 0;   // the number of the first of them, and the next one's place among them
   std::uint32_t sampled_runs_apart_ = 1;
+};
+
+// Puts the parts of each draw's work together.
+class WholeDraws {
+ public:
+  WholeDraws(const Trace& trace, std::function<void(DrawWork)> take)
+      : trace_(trace), take_(std::move(take)) {}
+
+  void add(const DrawWork& part) {
+    const std::size_t triangles = std::get<Draw>(trace_.commands[part.command]).index_count / 3;
+    if (!is_begun_) begin(part, triangles);
+    const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+    behind(whole_.shaded_vertices, part.shaded_vertices);
+    behind(whole_.triangles, part.triangles);
+    behind(whole_.quads, part.quads);
+    behind(whole_.texel_blocks, part.texel_blocks);
+    behind(whole_.clear_tiles, part.clear_tiles);
+    if (whole_.triangles.size() != triangles) return;
+    is_begun_ = false;
+    take_(std::move(whole_));
+  }
+
+ private:
+  // For which a record has room from the start. Most splats cover fewer, and what is not touched takes no
+  // memory; records that grow are copied into memory that the system has to clear.
+  static constexpr std::size_t kQuadsATriangle = 8, kMostTrianglesAhead = 1 << 16;
+
+  void begin(const DrawWork& part, std::size_t triangles) {
+    is_begun_ = true;
+    whole_ = {};
+    whole_.command = part.command;
+    whole_.sampled_runs_apart = part.sampled_runs_apart;
+    whole_.samples_only = part.samples_only;
+    whole_.triangles.reserve(triangles);
+    if (part.samples_only) return;
+    whole_.shaded_vertices.reserve(2 * triangles);
+    const std::size_t quads = kQuadsATriangle * std::min(triangles, kMostTrianglesAhead);
+    whole_.quads.reserve(quads);
+    whole_.texel_blocks.reserve(quads);
+  }
+
+  const Trace& trace_;
+  std::function<void(DrawWork)> take_;
+  DrawWork whole_;
+  bool is_begun_ = false;
 };
 
 // A renderer that records nothing, with what it draws on.
@@ -183,7 +229,7 @@ struct Unrecorded {
                 .record = Record::nothing},
         rendered{Frame(trace.width, trace.height, options.formats), {}, {}},
         renderer(
-            trace, options, rendered, [](const DrawWork&) {}, [](std::size_t) {}) {}
+            trace, options, rendered, [](DrawWork&) {}, [](std::size_t) {}) {}
 
   RenderOptions options;
   Rendered rendered;
@@ -199,12 +245,24 @@ RenderOptions render_options(const Machine& machine, Record record) {
 Rendered render(const Trace& trace, const RenderOptions& options, const std::function<void(double)>& progress,
                 const std::function<void(const Frame&)>& on_frame,
                 const std::function<void(DrawWork)>& on_work) {
+  std::vector<DrawWork> kept;
+  const auto keep = [&](DrawWork work) { kept.push_back(std::move(work)); };
+  WholeDraws draws(trace, on_work ? on_work : keep);
+  Rendered rendered =
+      render_in_parts(trace, options, progress, on_frame, [&](const DrawWork& part) { draws.add(part); });
+  rendered.work = std::move(kept);
+  return rendered;
+}
+
+Rendered render_in_parts(const Trace& trace, const RenderOptions& options,
+                         const std::function<void(double)>& progress,
+                         const std::function<void(const Frame&)>& on_frame,
+                         const std::function<void(DrawWork&)>& on_part) {
   Rendered rendered{Frame(trace.width, trace.height, options.formats), {}, {}};
-  const auto keep = [&](DrawWork work) { rendered.work.push_back(std::move(work)); };
   const auto tell = [&](std::size_t command) {
     if (progress) progress(static_cast<double>(command) / static_cast<double>(trace.commands.size()));
   };
-  Renderer renderer(trace, options, rendered, on_work ? on_work : keep, tell);
+  Renderer renderer(trace, options, rendered, on_part, tell);
   const std::span<const Command> commands = trace.commands;
   std::size_t first = 0;
   for (const std::size_t end : frame_ends(trace)) {

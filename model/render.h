@@ -61,6 +61,15 @@ Rendered render(const Trace& trace, const RenderOptions& options,
                 const std::function<void(const Frame&)>& on_frame = {},
                 const std::function<void(DrawWork)>& on_work = {});
 
+// The same with the work in parts, of the draws in order: what some triangles did, one behind the other, as
+// soon as it is done. So it takes little memory, whatever is drawn. A draw of no triangles has one part, of
+// nothing. Numbers of triangles are those of the draw. `on_part` may leave another record in place of the one
+// that it is given, whose memory is then used again.
+Rendered render_in_parts(const Trace& trace, const RenderOptions& options,
+                         const std::function<void(double)>& progress,
+                         const std::function<void(const Frame&)>& on_frame,
+                         const std::function<void(DrawWork& part)>& on_part);
+
 // The frame that `commands` leave on the buffers, textures and programs of `trace`: many views share them.
 // Nothing is recorded.
 Frame render_view(const Trace& trace, std::span<const Command> commands, RenderOptions options);

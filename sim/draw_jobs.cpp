@@ -65,7 +65,7 @@ PixelWork work_of(const isa::Program& program, const Machine::Pixel& spec) {
 
 }  // namespace
 
-bool adds_up(const DrawWork& work, const Draw& draw) {
+bool adds_up(const DrawWork& work) {
   std::uint64_t quads = 0, quads_passed = 0, vertices = 0;
   for (std::size_t i = 0; i < work.triangles.size(); i = work.next_recorded(i)) {
     quads += work.triangles[i].quad_count;
@@ -79,15 +79,37 @@ bool adds_up(const DrawWork& work, const Draw& draw) {
   }
   if (work.samples_only) vertices = 0;
   return quads == work.quads.size() && quads_passed == passed && vertices == work.shaded_vertices.size() &&
-         blocks == work.texel_blocks.size() && work.triangles.size() == draw.index_count / 3;
+         blocks == work.texel_blocks.size();
 }
 
-void count_items(DrawJob& job) {
-  job.triangles_set_up = job.colored_quads = 0;
-  for (const TriangleWork& triangle : job.work->triangles) {
-    job.triangles_set_up += triangle.pieces != 0;
-    job.colored_quads += job.draw->state.color_write ? triangle.quads_passed : 0;
+bool adds_up(const DrawWork& work, const Draw& draw) {
+  return work.triangles.size() == draw.index_count / 3 && adds_up(work);
+}
+
+std::uint64_t clipped_triangles(const DrawWork& work) {
+  return static_cast<std::uint64_t>(std::ranges::count_if(
+      work.triangles, [](const TriangleWork& triangle) { return triangle.pieces > 1; }));
+}
+
+DrawCounts counts_of(const DrawWork& work, const Draw& draw) {
+  DrawCounts counts;
+  counts.triangles = work.triangles.size();
+  counts.shaded_vertices = work.shaded_vertices.size();
+  counts.quads = work.quads.size();
+  for (const TriangleWork& triangle : work.triangles) {
+    counts.triangles_set_up += triangle.pieces != 0;
+    counts.colored_quads += draw.state.color_write ? triangle.quads_passed : 0;
   }
+  return counts;
+}
+
+void show_all(DrawJob& job, const DrawWork& work) {
+  job.triangles = Records(std::span(work.triangles));
+  job.shaded_vertices = Records(std::span(work.shaded_vertices));
+  job.quads = Records(std::span(work.quads));
+  job.texel_blocks = Records(std::span(work.texel_blocks));
+  job.counts = counts_of(work, *job.draw);
+  job.all_triangles = work.triangles.size();
 }
 
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec) {
@@ -171,9 +193,8 @@ void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice) {
   job.work = &work;
   if (!adds_up(work, *job.draw))
     throw ModelError("the work record of command " + std::to_string(work.command) + " does not add up");
-  job.triangles_clipped = static_cast<std::uint64_t>(std::ranges::count_if(
-      work.triangles, [](const TriangleWork& triangle) { return triangle.pieces > 1; }));
-  if (!work.samples_only) count_items(job);  // the units do; an estimate does not look at these
+  job.triangles_clipped = clipped_triangles(work);
+  if (!work.samples_only) show_all(job, work);  // to the units; an estimate does not look at these
 }
 
 void expect_work_of_each_draw(const Trace& trace, std::span<const DrawWork> work) {

@@ -8,7 +8,7 @@
 #include "model/isa/program.h"
 #include "model/machine/machine.h"
 #include "model/work/work.h"
-#include "sim/units/draw_unit.h"
+#include "sim/units/draw_job.h"
 #include "sim/units/frame_lines.h"
 #include "sim/units/vertex/vertex_unit.h"
 
@@ -40,11 +40,16 @@ Needs needs_of(const Trace& trace, std::span<const DrawJob> jobs);
 // as one instruction that writes both.
 std::uint64_t clocks_per_quad(const isa::Program& program, const Machine::Pixel& spec);
 
-// Whether the counts of a work record agree with each other and with its draw.
+// Whether the counts of a work record agree with each other, and with its draw where it is all of one.
+bool adds_up(const DrawWork& work);
 bool adds_up(const DrawWork& work, const Draw& draw);
 
-// Counts in a job what its work holds of triangles to set up and of coloured quads.
-void count_items(DrawJob& job);
+// Triangles of a draw's work, or of a part of it, that were clipped into several pieces, and what else it
+// holds.
+std::uint64_t clipped_triangles(const DrawWork& work);
+DrawCounts counts_of(const DrawWork& work, const Draw& draw);
+// Gives the units all of a draw's work.
+void show_all(DrawJob& job, const DrawWork& work);
 
 // The vertex programs that the draws use, and the draws, in order. UserError where a program does not load.
 struct PreparedDraws {

@@ -231,11 +231,12 @@ void connect_quads(Builder& build, const Units& u, Items& set_up, const Machine&
 void set_commands(SimulatedMachine& machine, const Units& u, const Machine& spec, const MemoryLayout& layout,
                   const Needs& use) {
   std::vector<DrawUnit*> draw_units{u.fetch, u.assembly, u.setup, u.raster};
-  draw_units.insert(draw_units.end(), u.vertex.begin(), u.vertex.end());
   for (DrawUnit* unit : {static_cast<DrawUnit*>(u.depth), static_cast<DrawUnit*>(u.texture),
                          static_cast<DrawUnit*>(u.pixel), static_cast<DrawUnit*>(u.blend)}) {
     if (unit) draw_units.push_back(unit);
   }
+  machine.of_draws.assign(draw_units.begin(), draw_units.end());
+  draw_units.insert(draw_units.begin() + 4, u.vertex.begin(), u.vertex.end());
   u.command->set_draws(machine.jobs, draw_units);
   std::vector<CommandProcessor::Surface> cleared{{layout.color_address, layout.color.bytes()}};
   if (use.depth && !spec.depth.fast_clear) cleared.push_back({layout.depth_address, layout.depth.bytes()});

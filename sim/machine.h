@@ -32,8 +32,9 @@ struct SimulatedMachine {
   std::vector<std::unique_ptr<Unit>> units;  // in the order in which they are called, core before bus
   std::vector<std::unique_ptr<ChannelState>> channels;
   std::vector<std::unique_ptr<MemoryPort>> ports;
-  Needs built;                      // what there is of the units that a trace may do without
-  std::vector<const Unit*> memory;  // of the units: the memory channels
+  Needs built;                            // what there is of the units that a trace may do without
+  std::vector<const Unit*> memory;        // of the units: the memory channels
+  std::vector<const DrawUnit*> of_draws;  // and those that look at the records of draws
   Host* host = nullptr;
   PrimitiveAssembly* assembly = nullptr;
   CommandProcessor* command = nullptr;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "sim/work_parts.h"
+
 namespace splatscope::sim {
 namespace {
 
@@ -121,12 +123,13 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
   return run(*machine, trace, progress, observers);
 }
 
-Result simulate_beside(const Trace& trace, const WorkSource& work_of, const Machine& spec,
+Result simulate_beside(const Trace& trace, const PartSource& next_part, const Machine& spec,
                        Scheduler scheduler, const std::function<void(double)>& progress,
                        std::span<Observer* const> observers) {
   const MemoryLayout layout = lay_out(trace, spec);
   const auto machine = build_machine(trace, prepare_draws(trace, spec, layout), layout, spec, scheduler);
-  machine->command->on_draw([&](std::uint32_t draw) { give_work(machine->jobs[draw], work_of(draw)); });
+  WorkParts parts(next_part, machine->of_draws);
+  machine->command->on_draw([&](std::uint32_t draw) { parts.begin(machine->jobs[draw]); });
   return run(*machine, trace, progress, observers);
 }
 

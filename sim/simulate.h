@@ -96,10 +96,11 @@ Result simulate(const Trace& trace, std::span<const DrawWork> work, const Machin
                 Scheduler scheduler = Scheduler::skip_ahead, const std::function<void(double)>& progress = {},
                 std::span<Observer* const> observers = {}, UnitChoice choice = UnitChoice::needed);
 
-// The same while the work is still being computed: `work_of` is asked for that of each draw, in order, just
-// before the draw begins, and may wait for it. It is needed until the next one is asked for.
-using WorkSource = std::function<const DrawWork&(std::size_t draw)>;
-Result simulate_beside(const Trace& trace, const WorkSource& work_of, const Machine& machine,
+// The same while the work is still being computed: `next_part` is asked for it as it is needed, may wait for
+// it, and may cut each draw's where it likes between triangles (as render_in_parts() does). What it gives is
+// needed until it is asked again.
+using PartSource = std::function<const DrawWork&()>;
+Result simulate_beside(const Trace& trace, const PartSource& next_part, const Machine& machine,
                        Scheduler scheduler = Scheduler::skip_ahead,
                        const std::function<void(double)>& progress = {},
                        std::span<Observer* const> observers = {});

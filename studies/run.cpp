@@ -163,10 +163,13 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
   WorkQueue queue;
   std::future<Rendered> function = std::async(std::launch::async, [&] {
     try {
-      return render(trace, options, {}, on_frame, [&](DrawWork work) {
+      const auto put = [&](DrawWork& work) {
         if (timing.heat_maps) timing.heat_maps->add(work);
-        queue.put(std::move(work));
-      });
+        queue.put(work);
+      };
+      return fidelity == Fidelity::sampled
+                 ? render(trace, options, {}, on_frame, [&](DrawWork work) { put(work); })
+                 : render_in_parts(trace, options, {}, on_frame, put);
     } catch (...) {
       queue.fail(std::current_exception());
       throw;
@@ -176,11 +179,14 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
     WorkQueue& queue;
     ~Stop() { queue.stop(); }
   } stop{queue};
-  const sim::WorkSource work_of = [&](std::size_t) -> const DrawWork& { return queue.next(); };
   const auto time = [&] {
     if (fidelity == Fidelity::sampled)
-      return sim::estimate_sampled_beside(trace, work_of, machine, timing.seed, progress);
-    return sim::simulate_beside(trace, work_of, machine, scheduler_of(fidelity), progress, timing.observers);
+      return sim::estimate_sampled_beside(
+          trace, [&](std::size_t) -> const DrawWork& { return queue.next(); }, machine, timing.seed,
+          progress);
+    return sim::simulate_beside(
+        trace, [&]() -> const DrawWork& { return queue.next(); }, machine, scheduler_of(fidelity), progress,
+        timing.observers);
   };
   sim::Result result = time();
   return {function.get(), std::move(result), 0, {}, {}};

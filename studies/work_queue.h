@@ -5,25 +5,27 @@
 #include <deque>
 #include <exception>
 #include <mutex>
-#include <optional>
+#include <utility>
 
 #include "model/stop.h"
 #include "model/work/work.h"
 
 namespace splatscope::studies {
 
-// The work of draws on its way from where it is computed to the thread that times it. Few draws wait, so
-// that neither their number nor the scene's size decides how much memory they take.
+// The work of draws, or parts of it, on its way from where it is computed to the thread that times it. Few
+// wait, so that neither their number nor the scene's size decides how much memory they take.
 class WorkQueue {
  public:
-  static constexpr std::size_t kAhead = 4;  // draws that wait
+  static constexpr std::size_t kAhead = 4;  // that wait
 
   // ---- those that compute, one at a time; waits while there is no room. Throws Interrupted after stop().
-  void put(DrawWork work) {
+  // Leaves in its place one that was taken before, if there is one, whose memory can be used again.
+  void put(DrawWork& work) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return waiting_.size() < kAhead || stopped_; });
     if (stopped_) throw Interrupted();
-    waiting_.push_back(std::move(work));
+    waiting_.push_back(std::exchange(work, std::move(done_with_)));
+    done_with_ = {};
     changed_.notify_all();
   }
   // No more comes, for this reason.
@@ -33,16 +35,15 @@ class WorkQueue {
     changed_.notify_all();
   }
 
-  // ---- the thread that times: the next draw's work, which stays until the next call. Throws what fail() was
-  // given.
+  // ---- the thread that times: the next one, which stays until the next call. Throws what fail() was given.
   const DrawWork& next() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !waiting_.empty() || failure_; });
     if (waiting_.empty()) std::rethrow_exception(failure_);
-    taken_ = std::move(waiting_.front());
+    done_with_ = std::exchange(taken_, std::move(waiting_.front()));
     waiting_.pop_front();
     changed_.notify_all();
-    return *taken_;
+    return taken_;
   }
   // What comes is not wanted any more.
   void stop() {
@@ -55,7 +56,7 @@ class WorkQueue {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<DrawWork> waiting_;
-  std::optional<DrawWork> taken_;
+  DrawWork taken_, done_with_;
   std::exception_ptr failure_;
   bool stopped_ = false;
 };

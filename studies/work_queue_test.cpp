@@ -8,15 +8,18 @@
 #include <stdexcept>
 #include <thread>
 
+#include "model/testing/draws.h"
+#include "model/testing/sanitized.h"
+#include "studies/peak_memory.h"
 #include "studies/run.h"
 
 namespace splatscope::studies {
 namespace {
 
-DrawWork work_of(std::uint32_t command) {
+void put(WorkQueue& queue, std::uint32_t command) {
   DrawWork work;
   work.command = command;
-  return work;
+  queue.put(work);
 }
 
 TEST(WorkQueue, DrawsComeInOrderThoughFewCanWait) {
@@ -24,7 +27,7 @@ TEST(WorkQueue, DrawsComeInOrderThoughFewCanWait) {
   WorkQueue queue;
   std::atomic<std::uint32_t> made = 0;
   std::thread maker([&] {
-    for (; made < kDraws; ++made) queue.put(work_of(made));
+    for (; made < kDraws; ++made) put(queue, made);
   });
   for (std::uint32_t i = 0; i < kDraws; ++i) {
     EXPECT_EQ(queue.next().command, i);
@@ -35,7 +38,7 @@ TEST(WorkQueue, DrawsComeInOrderThoughFewCanWait) {
 
 TEST(WorkQueue, AFailureComesAfterWhatWasMadeBefore) {
   WorkQueue queue;
-  queue.put(work_of(7));
+  put(queue, 7);
   queue.fail(std::make_exception_ptr(std::runtime_error("no more")));
   EXPECT_EQ(queue.next().command, 7u);
   EXPECT_THROW(queue.next(), std::runtime_error);
@@ -46,7 +49,7 @@ TEST(WorkQueue, AStopEndsTheOneThatWaitsToPut) {
   std::thread maker([&] {
     EXPECT_THROW(
         {
-          for (std::uint32_t i = 0;; ++i) queue.put(work_of(i));
+          for (std::uint32_t i = 0;; ++i) put(queue, i);
         },
         Interrupted);
   });
@@ -97,6 +100,22 @@ TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
   EXPECT_EQ(sampled.timing->cycles, estimate.cycles);
   EXPECT_EQ(sampled.timing->cycles_plus_minus, estimate.cycles_plus_minus);
   EXPECT_TRUE(sampled.rendered.work.empty());
+}
+
+// The records of a rectangle, of which a draw may have thousands, are gone when the last unit has seen them.
+TEST(RunFrame, CycleTakesNoMoreMemoryForMoreOfTheSame) {
+  const Machine machine = machine::load(machine::kRadeon8500);
+  const auto megabytes = [&](std::uint32_t rectangles) {
+    const Trace trace = splatscope::testing::rectangles(256, rectangles);
+    restart_peak_memory();
+    const double before = peak_megabytes();
+    EXPECT_GT(run_frame(trace, machine, Fidelity::cycle).rendered.counters.quads, 16384u * rectangles);
+    return peak_megabytes() - before;
+  };
+  if (!restart_peak_memory()) GTEST_SKIP() << "the system does not tell the peak of the memory";
+  const double few = megabytes(100), many = megabytes(300);
+  if (kSanitized) return;  // which keep what is freed
+  EXPECT_LT(many, few + 5) << "200 rectangles more have 26 MB of quads";
 }
 
 // Neither before nor behind: where the first picture is done, the timing has begun.

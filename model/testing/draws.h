@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,30 @@ inline std::vector<std::array<unsigned, 5>> listed(std::span<const QuadWork> qua
   for (const QuadWork& quad : quads)
     all.push_back({quad.x, quad.y, quad.covered, quad.passed, quad.texel_block_count});
   return all;
+}
+
+// One draw of rectangles, each over all of a square frame of `size` pixels a side.
+inline Trace rectangles(std::uint32_t size, std::uint32_t count) {
+  Trace trace;
+  trace.width = trace.height = size;
+  std::vector<float> vertices;
+  std::vector<std::uint16_t> indices;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (const float corner : {-1.0f, 1.0f})
+      for (const float value : {corner, -1.0f, 0.5f, 1.0f, corner, 1.0f, 0.5f, 1.0f})
+        vertices.push_back(value);
+    for (const unsigned corner : {0u, 1u, 2u, 2u, 1u, 3u})
+      indices.push_back(static_cast<std::uint16_t>(4 * i + corner));
+  }
+  trace.buffers = {buffer_of(vertices), buffer_of(indices)};
+  trace.programs = {{"plain.vs", "vs_1_1\nmov oPos, v0\nmov oD0, v0\n"}};
+  Draw draw;
+  draw.vertex_stride = 16;
+  draw.attributes = {{0, VertexFormat::float4, 0}};
+  draw.index_buffer = 1;
+  draw.index_count = 6 * count;
+  trace.commands = {draw};
+  return trace;
 }
 
 }  // namespace splatscope::testing

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-// What a draw gave each fixed-function stage to do, in order; the timing simulation moves exactly this.
-// It holds no colour and no cycle.
+// What a draw, or a part of it, gave each fixed-function stage to do, in order; the timing simulation moves
+// exactly this. It holds no colour and no cycle.
 namespace splatscope {
 
 enum class TriangleOutcome : std::uint8_t {

@@ -271,7 +271,8 @@ TEST(ThinDraw, KeepsPartsOfADrawAndKnowsWhatLiesBetween) {
   const RandomTrace made = splats(1000, 3);
   DrawJob whole;
   whole.draw = &std::get<Draw>(made.trace.commands[1]);
-  whole.work = &made.work[0];
+  whole.command = 1;
+  give_work(whole, made.work[0]);
   ThinDraw thin(whole);
   thin.keep(0, 64);
   thin.keep(64, 128);

@@ -49,7 +49,7 @@ DrawJob ThinDraw::job() {
   job.work = &work_;
   job.cuts = cuts_;
   job.marks = marks_;
-  count_items(job);
+  show_all(job, work_);
   return job;
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/draw_jobs.h"
 #include "sim/kernel/channel.h"
 #include "sim/units/draw_unit.h"
 #include "sim/units/memory/memory_port.h"
@@ -119,7 +120,7 @@ class Bench {
   // As the command processor would before cycle 0.
   void begin(const DrawJob& job, std::initializer_list<DrawUnit*> units) {
     std::uint32_t working = 0;
-    for (DrawUnit* unit : units) working += unit->begin(job) != 0;
+    for (DrawUnit* unit : units) working += unit->begin(job);
     completion_.start(0, working);
   }
 
@@ -183,15 +184,13 @@ struct TestDraw {
   DrawWork work;
   DrawJob job;
 
-  // Counts what DrawJob holds, as prepare_draws does for a trace.
+  // Shows it to the units, as for a trace.
   const DrawJob& prepare() {
     job.draw = &draw;
-    job.work = &work;
     job.textured = binds_texture(draw);
-    job.triangles_set_up = 0;
-    job.colored_quads = 0;
-    for (const TriangleWork& triangle : work.triangles) job.triangles_set_up += triangle.pieces != 0;
-    for (const QuadWork& quad : work.quads) job.colored_quads += is_colored(job, quad);
+    show_all(job, work);
+    job.counts.colored_quads = 0;
+    for (const QuadWork& quad : work.quads) job.counts.colored_quads += is_colored(job, quad);
     return job;
   }
   void add_quad(int x, int y, std::vector<std::uint32_t> blocks = {}, int passed = 0xf) {

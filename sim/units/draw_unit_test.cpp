@@ -12,7 +12,7 @@ class TwoItems final : public DrawUnit {
     item_done(now);
     return busy(now + 1);
   }
-  std::uint64_t start(const DrawJob&) override { return 2; }
+  std::uint64_t items(const DrawJob&) const override { return 2; }
 };
 
 // Else it would count down from 2^64, and be starved to the end.
@@ -25,7 +25,7 @@ TEST(DrawUnit, AnItemThatNoDrawHasIsAModelError) {
   completion.set_waiter(waiter);
   completion.start(0, 1);
   const DrawJob job{};
-  EXPECT_EQ(unit.begin(job), 2u);
+  EXPECT_TRUE(unit.begin(job));
   for (Cycle now = 1; now < 3; ++now) EXPECT_NO_THROW(unit.advance(now));
   EXPECT_EQ(completion.done_at(), 3u);
   EXPECT_THROW(unit.advance(3), ModelError);

@@ -13,10 +13,6 @@ void BlendUnit::connect(Items& in, MemoryPort& port, std::uint32_t address) {
   cache_.connect(port, address);
 }
 
-std::uint64_t BlendUnit::start(const DrawJob& job) {
-  return job.colored_quads;
-}
-
 void BlendUnit::pass(const Cut& cut) {
   for (const QuadWork& quad : cut.quads) {
     if (is_colored(job(), quad)) cache_.pass(line_of(quad), true);
@@ -34,7 +30,7 @@ bool BlendUnit::leave(Cycle now) {
 bool BlendUnit::enter(Cycle now) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   pass_cuts(in_->front());
-  const QuadWork& quad = job().work->quads[in_->front()];
+  const QuadWork& quad = job().quads[in_->front()];
   in_the_way_ = cache_.touch(now, line_of(quad), job().draw->state.blend, true);
   if (in_the_way_) return false;
   cache_.enter(in_->pop(now));

@@ -13,13 +13,14 @@ class BlendUnit final : public FrameUnit {
             int quads_per_clock);
   void connect(Items& in, MemoryPort& port, std::uint32_t address);
 
+  std::uint64_t items(const DrawJob& job) const override { return job.counts.colored_quads; }
+  bool takes_part(const DrawJob& job) const override { return job.draw->state.color_write; }
   std::vector<Statistic> statistics(Cycle) const override;
 
   // From the command processor: the cache drops the frame's lines.
   void clear() { cache_.invalidate(lines_.lines()); }
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
   bool leave(Cycle now) override;
   bool enter(Cycle now) override;
   void pass(const Cut& cut) override;

@@ -54,7 +54,7 @@ void CommandProcessor::begin(Cycle now, const Order& order) {
 void CommandProcessor::begin_draw(Cycle now, const DrawJob& job) {
   std::uint32_t working = 0;
   for (DrawUnit* unit : units_) {
-    if (unit->begin(job) == 0) continue;
+    if (!unit->begin(job)) continue;
     ++working;
     unit->wake(now + 1);
   }

@@ -17,9 +17,8 @@ void DepthUnit::connect(Items& in, const QuadTargets& out, MemoryPort& port, std
   cache_.connect(port, address);
 }
 
-std::uint64_t DepthUnit::start(const DrawJob& job) {
+void DepthUnit::start(const DrawJob& job) {
   out_ = targets_.of(job);
-  return uses_depth(*job.draw) ? job.work->quads.size() : 0;
 }
 
 void DepthUnit::pass(const Cut& cut) {
@@ -39,7 +38,7 @@ void DepthUnit::clear(bool fast) {
 
 bool DepthUnit::leave(Cycle now) {
   if (cache_.empty() || !cache_.is_ready(now)) return false;
-  const QuadWork& quad = job().work->quads[cache_.oldest()];
+  const QuadWork& quad = job().quads[cache_.oldest()];
   const bool colored = is_colored(job(), quad);
   if (colored && !out_->can_push(now)) return false;
   const std::uint32_t number = cache_.leave();
@@ -54,7 +53,7 @@ bool DepthUnit::enter(Cycle now) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   const std::uint32_t number = in_->front();
   pass_cuts(number);
-  const QuadWork& quad = job().work->quads[number];
+  const QuadWork& quad = job().quads[number];
   const std::uint32_t line = lines_.line_of(quad);
   const bool writes = job().draw->state.depth_write && quad.passed != 0;
   in_the_way_ = cache_.touch(now, line, !cleared_[line], writes);

@@ -17,13 +17,17 @@ class DepthUnit final : public FrameUnit {
             int quads_per_clock);
   void connect(Items& in, const QuadTargets& out, MemoryPort& port, std::uint32_t address);
 
+  std::uint64_t items(const DrawJob& job) const override {
+    return uses_depth(*job.draw) ? job.counts.quads : 0;
+  }
+  bool takes_part(const DrawJob& job) const override { return uses_depth(*job.draw); }
   std::vector<Statistic> statistics(Cycle) const override;
 
   // From the command processor: all lines are cleared (`fast`: marked only).
   void clear(bool fast);
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
+  void start(const DrawJob& job) override;
   bool leave(Cycle now) override;
   bool enter(Cycle now) override;
   void pass(const Cut& cut) override;

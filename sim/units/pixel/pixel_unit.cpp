@@ -10,9 +10,8 @@ void PixelUnit::connect(const QuadSources& in, Items& out) {
   out_ = &out;
 }
 
-std::uint64_t PixelUnit::start(const DrawJob& job) {
+void PixelUnit::start(const DrawJob& job) {
   in_ = sources_.of(job);
-  return job.colored_quads;
 }
 
 Step PixelUnit::advance(Cycle now) {

@@ -14,10 +14,12 @@ class PixelUnit final : public DrawUnit {
   void connect(const QuadSources& in, Items& out);
 
   Step advance(Cycle now) override;
+  std::uint64_t items(const DrawJob& job) const override { return job.counts.colored_quads; }
+  bool takes_part(const DrawJob& job) const override { return job.draw->state.color_write; }
   std::vector<Statistic> statistics(Cycle) const override;
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
+  void start(const DrawJob& job) override;
 
   int quads_per_clock_;
   QuadSources sources_;

@@ -17,16 +17,15 @@ void PrimitiveAssembly::connect(Channel<std::uint8_t>& order, std::vector<Channe
   out_ = &out;
 }
 
-std::uint64_t PrimitiveAssembly::start(const DrawJob& job) {
+void PrimitiveAssembly::start(const DrawJob&) {
   triangle_ = 0;
   vertices_ = 0;
   next_mark_ = 0;
-  return job.work->triangles.size();
 }
 
 // One vertex a cycle, when the next triangle needs it.
 bool PrimitiveAssembly::take_vertex(Cycle now) {
-  if (vertices_ >= job().work->triangles[triangle_].new_vertices || !order_->can_pop(now)) return false;
+  if (vertices_ >= job().triangles[triangle_].new_vertices || !order_->can_pop(now)) return false;
   auto& unit = *units_[order_->front()];
   if (!unit.can_pop(now)) return false;
   order_->pop(now);
@@ -36,7 +35,7 @@ bool PrimitiveAssembly::take_vertex(Cycle now) {
 }
 
 bool PrimitiveAssembly::assemble(Cycle now) {
-  const TriangleWork& triangle = job().work->triangles[triangle_];
+  const TriangleWork& triangle = job().triangles[triangle_];
   if (free_from_ > now || vertices_ < triangle.new_vertices) return false;
   const bool drawn = triangle.pieces != 0;
   if (drawn) {
@@ -66,7 +65,7 @@ Step PrimitiveAssembly::advance(Cycle now) {
   if (has_work()) moved |= take_vertex(now);
   if (moved) return busy(now + 1);
   if (free_from_ > now) return busy(free_from_);
-  if (vertices_ >= job().work->triangles[triangle_].new_vertices) {
+  if (vertices_ >= job().triangles[triangle_].new_vertices) {
     return blocked(out_->consumer(), out_->next_free());
   }
   if (!order_->can_pop(now)) return starved(order_->next_visible());

@@ -19,6 +19,7 @@ class PrimitiveAssembly final : public DrawUnit {
   void connect(Channel<std::uint8_t>& order, std::vector<Channel<VertexNumber>*> units, Items& out);
 
   Step advance(Cycle now) override;
+  std::uint64_t items(const DrawJob& job) const override { return job.counts.triangles; }
   std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
@@ -28,7 +29,7 @@ class PrimitiveAssembly final : public DrawUnit {
   void on_mark(std::function<void(Cycle)> tell) { tell_ = std::move(tell); }
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
+  void start(const DrawJob& job) override;
   bool take_vertex(Cycle now);
   bool assemble(Cycle now);
 

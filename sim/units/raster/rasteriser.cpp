@@ -13,21 +13,20 @@ void Rasteriser::connect(Items& in, const QuadTargets& out) {
   targets_ = out;
 }
 
-std::uint64_t Rasteriser::start(const DrawJob& job) {
+void Rasteriser::start(const DrawJob& job) {
   next_quad_ = 0;
   out_ = targets_.of(job);
   all_quads_ = uses_depth(*job.draw);
-  return job.triangles_set_up;
 }
 
 int Rasteriser::send(Cycle now) {
   int sent = 0;
   for (; sent < quads_per_clock_ && quads_left_ != 0; ++sent) {
-    if (out_ && (all_quads_ || is_colored(job(), job().work->quads[next_quad_]))) {
+    if (out_ && (all_quads_ || is_colored(job(), job().quads[next_quad_]))) {
       if (!out_->can_push(now)) break;
       out_->push(now, next_quad_);
     }
-    if (on_quad_) on_quad_(now, job().work->quads[next_quad_]);
+    if (on_quad_) on_quad_(now, job().quads[next_quad_]);
     ++next_quad_;
     --quads_left_;
   }
@@ -39,7 +38,7 @@ Step Rasteriser::advance(Cycle now) {
   if (!walking_) {
     if (!in_->can_pop(now)) return nothing_to_take(in_->next_visible());
     triangle_ = in_->pop(now);
-    const TriangleWork& triangle = job().work->triangles[triangle_];
+    const TriangleWork& triangle = job().triangles[triangle_];
     quads_left_ = triangle.quad_count;
     tiles_left_ = std::max(triangle.tile_count, 1u);
     tiles_ += triangle.tile_count;

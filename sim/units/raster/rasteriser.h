@@ -22,11 +22,12 @@ class Rasteriser final : public DrawUnit {
   void on_quad(std::function<void(Cycle, const QuadWork&)> on_quad) { on_quad_ = std::move(on_quad); }
 
   Step advance(Cycle now) override;
+  std::uint64_t items(const DrawJob& job) const override { return job.counts.triangles_set_up; }
   std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
+  void start(const DrawJob& job) override;
   int send(Cycle now);
 
   Machine::Raster spec_;

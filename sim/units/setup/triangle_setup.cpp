@@ -10,17 +10,13 @@ void TriangleSetup::connect(Items& in, Items& out) {
   out_ = &out;
 }
 
-std::uint64_t TriangleSetup::start(const DrawJob& job) {
-  return job.triangles_set_up;
-}
-
 Step TriangleSetup::advance(Cycle now) {
   if (free_from_ > now) return busy(free_from_);
   if (!in_->can_pop(now)) return nothing_to_take(in_->next_visible());
   if (!out_->can_push(now)) return blocked(out_->consumer(), out_->next_free());
   const std::uint32_t triangle = in_->pop(now);
   out_->push(now, triangle);
-  const Cycle pieces = job().work->triangles[triangle].pieces;
+  const Cycle pieces = job().triangles[triangle].pieces;
   free_from_ = now + pieces * static_cast<Cycle>(spec_.clocks_per_triangle);
   triangles_ += pieces;
   event(now, triangle);

@@ -14,11 +14,10 @@ class TriangleSetup final : public DrawUnit {
   void connect(Items& in, Items& out);
 
   Step advance(Cycle now) override;
+  std::uint64_t items(const DrawJob& job) const override { return job.counts.triangles_set_up; }
   std::vector<Statistic> statistics(Cycle) const override;
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
-
   Machine::Setup spec_;
   Items* in_ = nullptr;
   Items* out_ = nullptr;

@@ -20,15 +20,14 @@ void TextureUnit::connect(const QuadSources& in, Items& out, MemoryPort& port) {
   port_ = &port;
 }
 
-std::uint64_t TextureUnit::start(const DrawJob& job) {
-  if (!job.textured) return 0;
+void TextureUnit::start(const DrawJob& job) {
+  if (!job.textured) return;
   in_ = sources_.of(job);
   cache_.connect(*port_, job.texture_address);
   cache_.set_fill(static_cast<std::uint32_t>(job.draw->source ? spec_.line_bytes : spec_.fill_bytes));
   cache_.invalidate();
   next_block_ = 0;
   blocks_done_ = 0;
-  return job.colored_quads;
 }
 
 void TextureUnit::pass(const Cut& cut) {
@@ -48,12 +47,11 @@ bool TextureUnit::leave(Cycle now) {
 bool TextureUnit::look_up(Cycle now, int& lookups) {
   if (!cache_.has_room() || !in_->can_pop(now)) return false;
   if (blocks_done_ == 0) pass_cuts(in_->front());
-  const DrawWork& work = *job().work;
-  const std::uint32_t blocks = work.quads[in_->front()].texel_block_count;
+  const std::uint32_t blocks = job().quads[in_->front()].texel_block_count;
   for (; blocks_done_ < blocks; ++blocks_done_, --lookups) {
     if (lookups == 0) return true;  // the rest of this quad in the next clock
     in_the_way_ =
-        cache_.touch(now, work.texel_blocks[next_block_ + blocks_done_] >> line_shift_, true, false);
+        cache_.touch(now, job().texel_blocks[next_block_ + blocks_done_] >> line_shift_, true, false);
     if (in_the_way_) return false;
   }
   next_block_ += blocks;

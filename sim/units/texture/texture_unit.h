@@ -14,10 +14,14 @@ class TextureUnit final : public CachedUnit {
   void connect(const QuadSources& in, Items& out, MemoryPort& port);
 
   Step advance(Cycle now) override;
+  std::uint64_t items(const DrawJob& job) const override {
+    return job.textured ? job.counts.colored_quads : 0;
+  }
+  bool takes_part(const DrawJob& job) const override { return job.textured; }
   std::vector<Statistic> statistics(Cycle) const override;
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
+  void start(const DrawJob& job) override;
   bool leave(Cycle now);
   bool look_up(Cycle now, int& lookups);
   void pass(const Cut& cut) override;

@@ -21,12 +21,10 @@ void VertexUnit::connect(Channel<VertexNumber>& in, Channel<VertexNumber>& out) 
   out_ = &out;
 }
 
-// Its one item is the end of the draw: which unit gets how many vertices is found on the way.
-std::uint64_t VertexUnit::start(const DrawJob& job) {
+void VertexUnit::start(const DrawJob& job) {
   program_ = job.vertex_program;
   logics_[program_] = IssueLogic(programs_[program_], spec_);
   replays_[program_].rest();
-  return job.work->shaded_vertices.empty() ? 0 : 1;
 }
 
 // What the logic issues in the cycles up to and with this one.

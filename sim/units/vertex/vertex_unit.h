@@ -50,6 +50,8 @@ class VertexUnit final : public DrawUnit {
   const DrawJob& drawing() const { return job(); }
 
   Step advance(Cycle now) override;
+  // The end of the draw: which unit gets how many vertices is found on the way.
+  std::uint64_t items(const DrawJob& job) const override { return job.counts.shaded_vertices == 0 ? 0 : 1; }
   std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
@@ -59,7 +61,7 @@ class VertexUnit final : public DrawUnit {
     Cycle result_at;  // kNever: not known before its last slot is issued
   };
 
-  std::uint64_t start(const DrawJob& job) override;
+  void start(const DrawJob& job) override;
   bool is_referee() const { return domain().scheduler() == Scheduler::referee; }
   const IssueLogic& logic() const { return is_referee() ? logics_[program_] : replays_[program_].logic(); }
   void issue_up_to(Cycle now);

@@ -19,11 +19,10 @@ struct TestDraw {
 class Source final : public Unit {
  public:
   Source(DrawUnit& unit, Completion& completion, std::vector<TestDraw> draws)
-      : Unit("source"), unit_(unit), completion_(completion), draws_(std::move(draws)), work_(draws_.size()) {
+      : Unit("source"), unit_(unit), completion_(completion), draws_(std::move(draws)) {
     for (std::size_t i = 0; i < draws_.size(); ++i) {
-      work_[i].shaded_vertices.resize(draws_[i].gaps.size());
       DrawJob job;
-      job.work = &work_[i];
+      job.counts.shaded_vertices = draws_[i].gaps.size();
       job.vertex_program = draws_[i].program;
       jobs_.push_back(job);
     }
@@ -60,7 +59,6 @@ class Source final : public Unit {
   DrawUnit& unit_;
   Completion& completion_;
   std::vector<TestDraw> draws_;
-  std::vector<DrawWork> work_;
   std::vector<DrawJob> jobs_;
   Channel<VertexNumber>* out_ = nullptr;
   std::size_t draw_ = 0, sent_ = 0;

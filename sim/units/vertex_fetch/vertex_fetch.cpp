@@ -23,16 +23,15 @@ void VertexFetch::connect(const Ports& video, const Ports& agp, std::vector<Chan
   order_ = &order;
 }
 
-// One item: the end of the draw.
-std::uint64_t VertexFetch::start(const DrawJob& job) {
+void VertexFetch::start(const DrawJob& job) {
   const Draw& draw = *job.draw;
-  if (job.work->triangles.empty()) return 0;
+  if (job.all_triangles == 0) return;
   index_port_ = places_ports_[static_cast<std::size_t>(places_[draw.index_buffer])].indices;
   cache_.connect(*places_ports_[static_cast<std::size_t>(places_[draw.vertex_buffer])].vertices,
                  job.vertex_address);
   cache_.invalidate();
   const auto line_bytes = static_cast<std::uint32_t>(spec_.line_bytes);
-  const auto indices = static_cast<std::uint32_t>(3 * job.work->triangles.size());
+  const auto indices = static_cast<std::uint32_t>(3 * job.all_triangles);
   first_index_line_ = job.index_address / line_bytes;
   index_lines_ = (job.index_address + indices * kIndexBytes - 1) / line_bytes - first_index_line_ + 1;
   asked_ = taken_ = 0;
@@ -40,7 +39,6 @@ std::uint64_t VertexFetch::start(const DrawJob& job) {
   new_vertices_ = line_ = delivered_ = 0;
   in_triangle_ = in_vertex_ = false;
   walk_from_ = 0;
-  return 1;
 }
 
 const Unit* VertexFetch::no_unit_free(Cycle now) const {
@@ -65,7 +63,7 @@ bool VertexFetch::deliver(Cycle now) {
 
 // After the last vertex: word of the end to each vertex unit in turn.
 bool VertexFetch::end_draw(Cycle now) {
-  if (triangle_ != job().work->triangles.size() || delivered_ != vertex_) return false;
+  if (triangle_ != job().all_triangles || delivered_ != vertex_) return false;
   if (vertex_ == 0) ended_ = units_.size();
   bool moved = false;
   for (; ended_ < units_.size() && units_[ended_]->can_push(now); ++ended_) {
@@ -107,13 +105,13 @@ bool VertexFetch::index_is_here(Cycle now) {
 
 // Takes the indices of a triangle, then gathers its new vertices.
 bool VertexFetch::walk(Cycle now) {
-  if (triangle_ == job().work->triangles.size()) return false;
+  if (triangle_ == job().all_triangles) return false;
   if (walk_from_ > now) return false;
   if (!in_triangle_) {
     if (!index_is_here(now)) return false;
     in_triangle_ = true;
     indices_read_ += 3;
-    new_vertices_ = job().work->triangles[triangle_].new_vertices;
+    new_vertices_ = job().triangles[triangle_].new_vertices;
   }
   bool moved = false;
   while (new_vertices_ != 0 && gather(now)) moved = true;
@@ -121,6 +119,7 @@ bool VertexFetch::walk(Cycle now) {
   in_triangle_ = false;
   ++triangle_;
   walk_from_ = now + static_cast<Cycle>((3 + spec_.indices_per_clock - 1) / spec_.indices_per_clock);
+  item_done(now);
   return true;
 }
 
@@ -141,7 +140,7 @@ void VertexFetch::pass(const Cut& cut) {
 // Asks for the lines of the next new vertex, which then waits for them.
 bool VertexFetch::gather(Cycle now) {
   if (!cache_.has_room()) return false;
-  const Lines lines = lines_of(job().work->shaded_vertices[vertex_]);
+  const Lines lines = lines_of(job().shaded_vertices[vertex_]);
   if (!in_vertex_) {
     pass_cuts(&Cut::vertex, vertex_, [this](const Cut& cut) { pass(cut); });
     line_ = lines.first;
@@ -183,7 +182,7 @@ Step VertexFetch::waiting(Cycle now) {
     if (const Unit* unit = no_unit_free(now)) return blocked(*unit, next);
     return blocked(order_->consumer(), std::min(next, order_->next_free()));
   }
-  if (triangle_ == job().work->triangles.size()) {
+  if (triangle_ == job().all_triangles) {
     for (const auto* unit : units_) next = std::min(next, unit->next_free());
     return blocked(units_[ended_]->consumer(), next);
   }

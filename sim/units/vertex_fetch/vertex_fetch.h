@@ -27,11 +27,15 @@ class VertexFetch final : public DrawUnit {
   void set_places(std::vector<MemoryPlace> places) { places_ = std::move(places); }
 
   Step advance(Cycle now) override;
+  // Its triangles, and the end of the draw.
+  std::uint64_t items(const DrawJob& job) const override {
+    return job.all_triangles == 0 ? 0 : job.counts.triangles + (job.is_complete() ? 1 : 0);
+  }
   std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 
  private:
-  std::uint64_t start(const DrawJob& job) override;
+  void start(const DrawJob& job) override;
   bool deliver(Cycle now);
   bool end_draw(Cycle now);
   bool read_indices(Cycle now);

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "sim/simulate.h"
+#include "sim/units/draw_unit.h"
+
+namespace splatscope::sim {
+
+// The last records of a draw, in a ring that grows to what is held at once.
+template <class T>
+class RecordRing {
+ public:
+  void clear() { begin_ = end_ = 0; }
+  // Behind the last one.
+  void append(std::span<const T> more);
+  // Those before number `begin`, which has been reached.
+  void forget(std::uint64_t begin) { begin_ = begin; }
+  std::uint64_t end() const { return end_; }
+  // Until the next append().
+  Records<T> records() const { return {slots_.data(), slots_.size() - 1}; }
+
+ private:
+  std::vector<T> slots_;  // a power of two, or none
+  std::uint64_t begin_ = 0, end_ = 0;
+};
+
+// The work of draws that comes in parts while they are timed, of which no more is held than lies between the
+// first unit of the pipeline and the last one.
+class WorkParts final : public MoreWork {
+ public:
+  // `units`: that look at the records. They outlive it.
+  WorkParts(const PartSource& next, std::span<const DrawUnit* const> units) : next_(next), units_(units) {}
+
+  // Gives the job its first part, when all of the draw before has been done. ModelError where a part is of
+  // another command, or does not add up.
+  void begin(DrawJob& job);
+  void take() override;
+
+ private:
+  // What a draw held at the end of a part.
+  struct Ends {
+    std::uint64_t triangles, shaded_vertices, quads, texel_blocks;
+    std::vector<std::uint64_t> items;  // by unit
+  };
+  void forget();
+
+  const PartSource& next_;
+  std::span<const DrawUnit* const> units_;
+  DrawJob* job_ = nullptr;
+  std::deque<Ends> parts_;  // that some unit may look at
+  RecordRing<TriangleWork> triangles_;
+  RecordRing<std::uint32_t> shaded_vertices_;
+  RecordRing<QuadWork> quads_;
+  RecordRing<std::uint32_t> texel_blocks_;
+};
+
+}  // namespace splatscope::sim

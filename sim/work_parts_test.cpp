@@ -1,0 +1,142 @@
+#include "sim/work_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "model/error.h"
+
+namespace splatscope::sim {
+namespace {
+
+std::vector<std::uint32_t> numbers(std::uint32_t first, std::uint32_t count) {
+  std::vector<std::uint32_t> some(count);
+  std::iota(some.begin(), some.end(), first);
+  return some;
+}
+
+TEST(RecordRing, HoldsWhatIsNotForgottenByItsNumbers) {
+  RecordRing<std::uint32_t> ring;
+  std::uint32_t begin = 0, end = 0;
+  for (const auto& [more, forgotten] :
+       {std::pair{3u, 0u}, {0u, 0u}, {2u, 3u}, {6u, 4u}, {1u, 1u}, {40u, 4u}}) {
+    begin += forgotten;
+    ring.forget(begin);
+    ring.append(numbers(end, more));
+    end += more;
+    ASSERT_EQ(ring.end(), end);
+    for (std::uint32_t i = begin; i < end; ++i) EXPECT_EQ(ring.records()[i], i);
+  }
+  ring.clear();
+  EXPECT_EQ(ring.end(), 0u);
+}
+
+// Does the triangles to set up when it is told, of draws that do not blend.
+class Idle final : public DrawUnit {
+ public:
+  using DrawUnit::DrawUnit;
+  Step advance(Cycle) override { return idle(); }
+  std::uint64_t items(const DrawJob& job) const override { return job.counts.triangles_set_up; }
+  bool takes_part(const DrawJob& job) const override { return !job.draw->state.blend; }
+  void do_one() { item_done(0); }
+};
+
+class WorkPartsTest : public ::testing::Test {
+ protected:
+  WorkPartsTest() : unit_("unit", completion_), parts_(source_, units_) {
+    draw_.index_count = 12;
+    job_.draw = &draw_;
+    job_.command = 7;
+    for (std::uint32_t i = 0; i < 3; ++i) part_.triangles.push_back({.quad_count = i, .quads_passed = i});
+    part_.command = 7;
+    part_.quads = {{.x = 1, .passed = 15}, {.x = 2, .passed = 15}, {.x = 3, .passed = 15}};
+  }
+  DrawWork last_part() const {
+    DrawWork last;
+    last.command = 7;
+    last.triangles = {{.new_vertices = 1, .pieces = 2}};
+    last.shaded_vertices = {9};
+    return last;
+  }
+
+  Draw draw_;
+  DrawJob job_;
+  DrawWork part_;
+  int asked_ = 0;
+  const PartSource source_ = [this]() -> const DrawWork& { return ++asked_, part_; };
+  Completion completion_;
+  Idle unit_;
+  const std::array<const DrawUnit*, 1> units_{&unit_};
+  WorkParts parts_;
+};
+
+TEST_F(WorkPartsTest, AUnitAsksForMoreWhenItHasDoneAllOfWhatItKnows) {
+  completion_.set_waiter(unit_);
+  completion_.start(0, 1);
+  ClockDomain domain("core", 1, 1, Scheduler::referee);
+  domain.add(unit_, 0);
+  parts_.begin(job_);
+  EXPECT_EQ(asked_, 1);
+  EXPECT_FALSE(job_.is_complete());
+  EXPECT_EQ(job_.counts.colored_quads, 3u);
+  EXPECT_TRUE(unit_.begin(job_));
+  EXPECT_EQ(asked_, 1);
+  EXPECT_EQ(job_.quads[2].x, 3);
+  part_ = last_part();
+  unit_.do_one();
+  unit_.do_one();
+  EXPECT_EQ(asked_, 1);
+  unit_.do_one();
+  EXPECT_EQ(asked_, 2);
+  EXPECT_TRUE(job_.is_complete());
+  EXPECT_EQ(job_.triangles[3].pieces, 2);
+  EXPECT_EQ(job_.shaded_vertices[0], 9u);
+  EXPECT_EQ(job_.triangles_clipped, 1u);
+  EXPECT_EQ(completion_.done_at(), kNever);
+  unit_.do_one();
+  EXPECT_EQ(asked_, 2);
+  EXPECT_EQ(completion_.done_at(), 1u);
+}
+
+TEST_F(WorkPartsTest, AUnitThatTakesNoPartInADrawAsksForNothing) {
+  draw_.state.blend = true;
+  part_.triangles.resize(1, {});
+  part_.triangles[0].pieces = 0;
+  part_.quads.clear();
+  parts_.begin(job_);
+  EXPECT_FALSE(unit_.begin(job_));
+  EXPECT_EQ(asked_, 1);
+  draw_.state.blend = false;
+  EXPECT_FALSE(unit_.begin(job_));
+  EXPECT_EQ(asked_, 4) << "there could be one in any of the four parts";
+}
+
+TEST_F(WorkPartsTest, WhatDoesNotFitTheDrawIsAModelError) {
+  const auto refused = [&](auto&& spoil) {
+    const DrawWork right = part_;
+    spoil(part_);
+    EXPECT_THROW(parts_.begin(job_), ModelError);
+    part_ = right;
+    parts_.begin(job_);
+    spoil(part_);
+    EXPECT_THROW(parts_.take(), ModelError);
+    part_ = right;
+    job_.counts = {};
+  };
+  refused([](DrawWork& part) { part.command = 8; });
+  refused([](DrawWork& part) { part.samples_only = true; });
+  refused([](DrawWork& part) { part.quads.pop_back(); });
+  refused([](DrawWork& part) { part.quads[1].passed = 0; });
+  refused([](DrawWork& part) { part.shaded_vertices.push_back(1); });
+  refused([](DrawWork& part) { part.texel_blocks.push_back(1); });
+  refused([](DrawWork& part) { part.triangles.resize(5); });
+  refused([](DrawWork& part) {
+    part = {};
+    part.command = 7;
+  });
+}
+
+}  // namespace
+}  // namespace splatscope::sim
