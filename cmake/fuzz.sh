@@ -6,7 +6,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build="$root/build/fuzz"
 seconds=${1:?usage: fuzz.sh SECONDS [NAME...]}
 names=("${@:2}")
-[ ${#names[@]} -gt 0 ] || mapfile -t names < <(find "$root/model" "$root/traces" -name '*_fuzz.cpp' -printf '%f\n' |
+[ ${#names[@]} -gt 0 ] || mapfile -t names < <(find "$root/model" "$root/traces" "$root/studies" -name '*_fuzz.cpp' -printf '%f\n' |
   sed 's/_fuzz.cpp$//' | sort)
 "$root/cmake/install_packages.sh"
 for name in "${names[@]}"; do

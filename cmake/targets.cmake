@@ -125,8 +125,8 @@ function(splatscope_fuzzers folder)
       target_link_options(${name} PRIVATE -fsanitize=fuzzer)
     else()
       add_executable(${name} ${source} ${CMAKE_SOURCE_DIR}/tests/fuzz/short_run.cpp)
-      # Seconds: a minute for all seven.
-      add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 9)
+      # Seconds: a minute for all eight.
+      add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 8)
     endif()
     target_link_libraries(${name} PRIVATE ${ARGN} splatscope_options)
     target_link_options(${name} PRIVATE -fno-lto)
