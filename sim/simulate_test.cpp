@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <random>
 #include <set>
 
 #include "model/command/load_program.h"
@@ -252,63 +251,6 @@ TEST(Simulate, WorkThatDoesNotFitTheTraceIsABug) {
   simulate(made.trace, made.work, machine);
   made.work[0].samples_only = true;
   EXPECT_THROW(simulate(made.trace, made.work, machine), ModelError);
-}
-
-// The triangles of a draw from one on, as many as asked for, and what they did.
-DrawWork part_of(const DrawWork& work, std::size_t first, std::size_t count) {
-  DrawWork part;
-  part.command = work.command;
-  auto vertex = work.shaded_vertices.begin();
-  auto quad = work.quads.begin();
-  auto block = work.texel_blocks.begin();
-  for (std::size_t i = 0; i < first + count; ++i) {
-    const TriangleWork& triangle = work.triangles[i];
-    if (i == first) {
-      part = {};
-      part.command = work.command;
-    }
-    part.triangles.push_back(triangle);
-    for (int n = 0; n < triangle.new_vertices; ++n) part.shaded_vertices.push_back(*vertex++);
-    for (std::uint32_t n = 0; n < triangle.quad_count; ++n, ++quad) {
-      part.quads.push_back(*quad);
-      for (int b = 0; b < quad->texel_block_count; ++b) part.texel_blocks.push_back(*block++);
-    }
-  }
-  return part;
-}
-
-// Work that comes while the simulation runs, in parts of any size, each in the place of the one before.
-TEST_P(RandomTraces, WorkThatComesAsItIsNeededGivesTheSame) {
-  SCOPED_TRACE("seed " + std::to_string(GetParam()));
-  RandomMaker maker(GetParam());
-  const RandomTrace made = maker.trace();
-  const Machine machine = maker.machine();
-  const Result at_once = simulate(made.trace, made.work, machine);
-  std::mt19937 random(static_cast<unsigned>(GetParam()));
-  for (const std::size_t most : {std::size_t{1}, std::size_t{7}, std::size_t{1000}}) {
-    std::size_t draw = 0, triangle = 0;
-    DrawWork now;
-    const auto next_part = [&]() -> const DrawWork& {
-      const DrawWork& work = made.work.at(draw);
-      const std::size_t left = work.triangles.size() - triangle;
-      const std::size_t count = std::min(left, std::uniform_int_distribution<std::size_t>(1, most)(random));
-      now = part_of(work, triangle, count);
-      triangle += count;
-      if (count == left) ++draw, triangle = 0;
-      return now;
-    };
-    const Result beside = simulate_beside(made.trace, next_part, machine);
-    EXPECT_EQ(draw, made.work.size());
-    EXPECT_EQ(beside.event_hash, at_once.event_hash);
-    EXPECT_EQ(beside.cycles, at_once.cycles);
-    EXPECT_EQ(beside.command_ends, at_once.command_ends);
-    ASSERT_EQ(beside.units.size(), at_once.units.size());
-    for (std::size_t i = 0; i < beside.units.size(); ++i) {
-      EXPECT_EQ(beside.units[i].busy, at_once.units[i].busy) << at_once.units[i].name;
-      EXPECT_EQ(beside.units[i].starved, at_once.units[i].starved) << at_once.units[i].name;
-      EXPECT_EQ(beside.units[i].blocked_by, at_once.units[i].blocked_by) << at_once.units[i].name;
-    }
-  }
 }
 
 TEST(Simulate, WorkThatFailsToComeEndsTheRun) {

@@ -13,7 +13,9 @@ FrameCost cost_of(const Trace& trace, const Machine& machine, Fidelity fidelity,
     FrameRun run = run_frame(trace, machine, fidelity);
     cost.seconds = i == 0 ? run.host_seconds : std::min(cost.seconds, run.host_seconds);
     cost.timing = std::move(run.timing);
-    if (is_measured) cost.megabytes = peak_megabytes();
+    if (!is_measured) continue;
+    const double megabytes = peak_megabytes();
+    cost.megabytes = i == 0 ? megabytes : std::min(cost.megabytes, megabytes);
   }
   return cost;
 }

@@ -4,10 +4,10 @@
 
 namespace splatscope::studies {
 
-// What a frame costs the host, and its time.
+// What a frame costs the host, the least of some runs, and its time.
 struct FrameCost {
-  double seconds = 0;                 // function and timing: the least of some runs
-  double megabytes = 0;               // of the process in memory at most, in the last run; 0: unknown
+  double seconds = 0;                 // function and timing
+  double megabytes = 0;               // of the process in memory at most; 0: unknown
   std::optional<sim::Result> timing;  // absent: functional
 };
 

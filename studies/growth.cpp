@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array kSides = {100, 178, 316, 562, 1000};
 constexpr int kRunsOfSurfels = 300000;  // small frames run several times
-constexpr int kMostRuns = 5;
+constexpr int kFewestRuns = 2, kMostRuns = 5;
 
 constexpr int kWarmUpSide = 64;     // of a frame before: it touches the code and the threads' buffers
 constexpr double kPaperSide = 256;  // surfels; of the plane that the default camera looks at
@@ -39,7 +39,7 @@ GrowthRow row_of(int side, const Machine& machine) {
   const bool is_measured = restart_peak_memory();
   const double before = peak_megabytes();
   const Trace trace = traces::record(scene, machine.numbers).trace;
-  const int runs = std::clamp(kRunsOfSurfels / surfels, 1, kMostRuns);
+  const int runs = std::clamp(kRunsOfSurfels / surfels, kFewestRuns, kMostRuns);
   GrowthRow row;
   row.surfels = surfels;
   if (is_measured) row.trace_megabytes = peak_megabytes() - before;
@@ -162,7 +162,8 @@ void add_growth_report(Findings& findings, std::span<const GrowthRow> rows) {
   cells.insert(cells.end(), {slopes, fixed, linear, worst});
   findings.report().heading("Growth with the number of surfels");
   findings.table(
-      "Planes with four pixels a surfel, each time the least of some runs. Below them the slope in log-log, "
+      "Planes with four pixels a surfel, times and memory the least of some runs. Below them the slope in "
+      "log-log, "
       "and a fixed part and that of a thousand surfels, which together are off by the least.",
       columns, cells);
   findings.plot("growth", plot);
