@@ -129,7 +129,8 @@ function(splatscope_fuzzers folder)
       add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/${corpus} 8)
     endif()
     target_link_libraries(${name} PRIVATE ${ARGN} splatscope_options)
-    target_link_options(${name} PRIVATE -fno-lto)
+    # SystemC's library looks for sc_main, which is where it is used.
+    target_link_options(${name} PRIVATE -fno-lto LINKER:--as-needed)
   endforeach()
 endfunction()
 
