@@ -236,7 +236,7 @@ void set_commands(SimulatedMachine& machine, const Units& u, const Machine& spec
     if (unit) draw_units.push_back(unit);
   }
   machine.of_draws.assign(draw_units.begin(), draw_units.end());
-  draw_units.insert(draw_units.begin() + 4, u.vertex.begin(), u.vertex.end());
+  draw_units.insert(draw_units.end(), u.vertex.begin(), u.vertex.end());
   u.command->set_draws(machine.jobs, draw_units);
   std::vector<CommandProcessor::Surface> cleared{{layout.color_address, layout.color.bytes()}};
   if (use.depth && !spec.depth.fast_clear) cleared.push_back({layout.depth_address, layout.depth.bytes()});

@@ -34,7 +34,7 @@ struct SimulatedMachine {
   std::vector<std::unique_ptr<MemoryPort>> ports;
   Needs built;                            // what there is of the units that a trace may do without
   std::vector<const Unit*> memory;        // of the units: the memory channels
-  std::vector<const DrawUnit*> of_draws;  // and those that look at the records of draws
+  std::vector<const DrawUnit*> of_draws;  // and those that count a draw's items by its records
   Host* host = nullptr;
   PrimitiveAssembly* assembly = nullptr;
   CommandProcessor* command = nullptr;

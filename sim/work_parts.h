@@ -29,11 +29,13 @@ class RecordRing {
   std::uint64_t begin_ = 0, end_ = 0;
 };
 
-// The work of draws that comes in parts while they are timed, of which no more is held than lies between the
-// first unit of the pipeline and the last one.
+// The work of draws that comes in parts while they are timed. What is held lies between the first unit of the
+// pipeline and the last one, or the next item of a unit that has none before it: of a stretch that is hidden,
+// all.
 class WorkParts final : public MoreWork {
  public:
-  // `units`: that look at the records. They outlive it.
+  // `units`: that count a draw's items by its records, and look at them until an item is done. They outlive
+  // it.
   WorkParts(const PartSource& next, std::span<const DrawUnit* const> units) : next_(next), units_(units) {}
 
   // Gives the job its first part, when all of the draw before has been done. ModelError where a part is of

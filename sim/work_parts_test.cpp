@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <numeric>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "model/error.h"
 #include "sim/testing/random_trace.h"
@@ -28,7 +29,7 @@ TEST(RecordRing, HoldsWhatIsNotForgottenByItsNumbers) {
   RecordRing<std::uint32_t> ring;
   std::uint32_t begin = 0, end = 0;
   for (const auto& [more, forgotten] :
-       {std::pair{3u, 0u}, {0u, 0u}, {2u, 3u}, {6u, 4u}, {1u, 1u}, {40u, 4u}}) {
+       {std::pair{3u, 0u}, {0u, 0u}, {2u, 3u}, {6u, 2u}, {1u, 4u}, {5u, 0u}, {40u, 4u}}) {
     begin += forgotten;
     ring.forget(begin);
     ring.append(numbers(end, more));
@@ -145,53 +146,59 @@ TEST_F(WorkPartsTest, WhatDoesNotFitTheDrawIsAModelError) {
   });
 }
 
-// The triangles of a draw from one on, as many as asked for, and what they did.
-DrawWork part_of(const DrawWork& work, std::size_t first, std::size_t count) {
-  DrawWork part;
-  part.command = work.command;
-  auto vertex = work.shaded_vertices.begin();
-  auto quad = work.quads.begin();
-  auto block = work.texel_blocks.begin();
-  for (std::size_t i = 0; i < first + count; ++i) {
-    const TriangleWork& triangle = work.triangles[i];
-    if (i == first) {
-      part = {};
-      part.command = work.command;
+// Cuts the work of draws into parts of up to `most` triangles, each in the place of the one before.
+class Cutter {
+ public:
+  Cutter(std::span<const DrawWork> draws, std::size_t most, unsigned seed)
+      : draws_(draws), count_(1, most), random_(seed) {}
+
+  const DrawWork& next() {
+    const DrawWork& draw = draws_[draw_];
+    part_ = {};
+    part_.command = draw.command;
+    for (std::size_t left = count_(random_); left != 0 && triangle_ != draw.triangles.size(); --left) {
+      const TriangleWork& triangle = draw.triangles[triangle_++];
+      part_.triangles.push_back(triangle);
+      move(draw.shaded_vertices, vertex_, triangle.new_vertices, part_.shaded_vertices);
+      for (std::size_t quad = quad_; quad != quad_ + triangle.quad_count; ++quad)
+        move(draw.texel_blocks, block_, draw.quads[quad].texel_block_count, part_.texel_blocks);
+      move(draw.quads, quad_, triangle.quad_count, part_.quads);
     }
-    part.triangles.push_back(triangle);
-    for (int n = 0; n < triangle.new_vertices; ++n) part.shaded_vertices.push_back(*vertex++);
-    for (std::uint32_t n = 0; n < triangle.quad_count; ++n, ++quad) {
-      part.quads.push_back(*quad);
-      for (int b = 0; b < quad->texel_block_count; ++b) part.texel_blocks.push_back(*block++);
+    if (triangle_ == draw.triangles.size()) {
+      ++draw_;
+      triangle_ = vertex_ = quad_ = block_ = 0;
     }
+    return part_;
   }
-  return part;
-}
+  bool is_at_the_end() const { return draw_ == draws_.size(); }
+
+ private:
+  template <class T>
+  static void move(const std::vector<T>& from, std::size_t& at, std::size_t count, std::vector<T>& to) {
+    for (; count != 0; --count) to.push_back(from[at++]);
+  }
+
+  std::span<const DrawWork> draws_;
+  std::uniform_int_distribution<std::size_t> count_;
+  std::mt19937 random_;
+  std::size_t draw_ = 0, triangle_ = 0, vertex_ = 0, quad_ = 0, block_ = 0;
+  DrawWork part_;
+};
 
 class PartsOfRandomTraces : public ::testing::TestWithParam<unsigned> {};
 
-// Work that comes while the simulation runs, in parts of any size, each in the place of the one before.
+// Work that comes while the simulation runs, in parts of any size.
 TEST_P(PartsOfRandomTraces, GiveWhatAllOfItGives) {
   SCOPED_TRACE("seed " + std::to_string(GetParam()));
   RandomMaker maker(GetParam());
   const RandomTrace made = maker.trace();
   const Machine machine = maker.machine();
   const Result at_once = simulate(made.trace, made.work, machine);
-  std::mt19937 random(static_cast<unsigned>(GetParam()));
-  for (const std::size_t most : {std::size_t{1}, std::size_t{7}, std::size_t{1000}}) {
-    std::size_t draw = 0, triangle = 0;
-    DrawWork now;
-    const auto next_part = [&]() -> const DrawWork& {
-      const DrawWork& work = made.work.at(draw);
-      const std::size_t left = work.triangles.size() - triangle;
-      const std::size_t count = std::min(left, std::uniform_int_distribution<std::size_t>(1, most)(random));
-      now = part_of(work, triangle, count);
-      triangle += count;
-      if (count == left) ++draw, triangle = 0;
-      return now;
-    };
-    const Result beside = simulate_beside(made.trace, next_part, machine);
-    EXPECT_EQ(draw, made.work.size());
+  for (const std::size_t most : {1, 7, 1000}) {
+    Cutter cutter(made.work, most, GetParam());
+    const Result beside = simulate_beside(
+        made.trace, [&]() -> const DrawWork& { return cutter.next(); }, machine);
+    EXPECT_TRUE(cutter.is_at_the_end());
     EXPECT_EQ(beside.event_hash, at_once.event_hash);
     EXPECT_EQ(beside.cycles, at_once.cycles);
     EXPECT_EQ(beside.command_ends, at_once.command_ends);

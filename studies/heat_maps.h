@@ -27,7 +27,7 @@ class HeatMaps {
   // `cycles`: whether the run is simulated, and so knows what a tile takes. `trace` outlives this.
   HeatMaps(const Trace& trace, bool cycles);
 
-  // Of each draw.
+  // Of each draw, or of each of its parts.
   void add(const DrawWork& work);
   // To watch the run; null without `cycles`.
   sim::Observer* observer() { return tiles_ ? &*tiles_ : nullptr; }

@@ -82,7 +82,7 @@ struct FrameRun {
 struct TimingOptions {
   std::uint64_t seed = 1;                          // of the samples
   std::span<sim::Observer* const> observers = {};  // watch a run that is simulated (cycle, referee)
-  HeatMaps* heat_maps = nullptr;                   // given the work of each draw
+  HeatMaps* heat_maps = nullptr;                   // given the work of each draw, or of its parts
 };
 
 // The time of a frame whose function gave `work`, by any fidelity but functional.
