@@ -143,11 +143,7 @@ TEST(DrawPipeline, PartsOfADrawAreFewOfItsTriangles) {
     std::size_t most = 0;
     const Rendered rendered = render_in_parts(trace, {}, {}, {}, [&](DrawWork& part) {
       most = std::max(most, part.quads.size());
-      const auto behind = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
-      behind(all.shaded_vertices, part.shaded_vertices);
-      behind(all.triangles, part.triangles);
-      behind(all.quads, part.quads);
-      behind(all.clear_tiles, part.clear_tiles);
+      all.append(part);
     });
     expect_same_work(whole.work[0], all);
     EXPECT_EQ(rendered.frame, whole.frame);

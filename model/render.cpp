@@ -185,12 +185,7 @@ class WholeDraws {
   void add(const DrawWork& part) {
     const std::size_t triangles = std::get<Draw>(trace_.commands[part.command]).index_count / 3;
     if (!is_begun_) begin(part, triangles);
-    const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
-    behind(whole_.shaded_vertices, part.shaded_vertices);
-    behind(whole_.triangles, part.triangles);
-    behind(whole_.quads, part.quads);
-    behind(whole_.texel_blocks, part.texel_blocks);
-    behind(whole_.clear_tiles, part.clear_tiles);
+    whole_.append(part);
     if (whole_.triangles.size() != triangles) return;
     is_begun_ = false;
     take_(std::move(whole_));

@@ -48,20 +48,13 @@ Trace nan_triangle(const std::string& pixel_program) {
 // White triangles of the given corners x y z w in clip space, on 16 x 16 pixels.
 template <std::size_t kCount>
 Trace white_triangles(const std::array<float, kCount>& corners, CullMode cull) {
-  Trace trace;
-  trace.width = trace.height = 16;
   std::array<std::uint16_t, kCount / 4> indices;
   std::iota(indices.begin(), indices.end(), std::uint16_t{0});
-  trace.buffers = {buffer_of(corners), buffer_of(indices)};
-  trace.programs = {{"white.vs", "vs_1_1\nmov oPos, v0\nmov oD0, c0\n"}};
-  Draw draw;
-  draw.vertex_stride = 16;
-  draw.attributes = {{0, VertexFormat::float4, 0}};
-  draw.index_buffer = 1;
-  draw.index_count = kCount / 4;
+  Trace trace =
+      testing::positions_drawn(16, corners, indices, {"white.vs", "vs_1_1\nmov oPos, v0\nmov oD0, c0\n"});
+  Draw& draw = std::get<Draw>(trace.commands[0]);
   draw.constants = {{1, 1, 1, 1}};
   draw.state.cull = cull;
-  trace.commands = {draw};
   return trace;
 }
 

@@ -10,11 +10,13 @@
 #include "model/error.h"
 #include "model/testing/error_of.h"
 #include "sim/testing/random_trace.h"
+#include "sim/testing/same_books.h"
 #include "sim/units/vertex/vertex_clocks.h"
 
 namespace splatscope::sim {
 namespace {
 
+using testing::expect_same_books;
 using testing::RandomMaker;
 using testing::RandomTrace;
 using testing::simple_trace;
@@ -59,10 +61,7 @@ TEST_P(RandomTraces, UnitsThatNoDrawNeedsChangeNothing) {
   EXPECT_EQ(all.event_hash, needed.event_hash);
   EXPECT_EQ(all.command_ends, needed.command_ends);
   for (const UnitBooks& books : needed.units) {
-    const UnitBooks& same = *books_of(all, books.name);
-    EXPECT_EQ(same.busy, books.busy) << books.name;
-    EXPECT_EQ(same.starved, books.starved) << books.name;
-    EXPECT_EQ(same.blocked_by, books.blocked_by) << books.name;
+    expect_same_books(*books_of(all, books.name), books);
   }
   for (const std::string& name : units_without(needed)) EXPECT_EQ(books_of(all, name)->busy, 0u) << name;
   for (const UnitStatistic& s : needed.statistics)

@@ -12,6 +12,7 @@
 
 #include "model/error.h"
 #include "sim/testing/random_trace.h"
+#include "sim/testing/same_books.h"
 
 namespace splatscope::sim {
 namespace {
@@ -203,11 +204,8 @@ TEST_P(PartsOfRandomTraces, GiveWhatAllOfItGives) {
     EXPECT_EQ(beside.cycles, at_once.cycles);
     EXPECT_EQ(beside.command_ends, at_once.command_ends);
     ASSERT_EQ(beside.units.size(), at_once.units.size());
-    for (std::size_t i = 0; i < beside.units.size(); ++i) {
-      EXPECT_EQ(beside.units[i].busy, at_once.units[i].busy) << at_once.units[i].name;
-      EXPECT_EQ(beside.units[i].starved, at_once.units[i].starved) << at_once.units[i].name;
-      EXPECT_EQ(beside.units[i].blocked_by, at_once.units[i].blocked_by) << at_once.units[i].name;
-    }
+    for (std::size_t i = 0; i < beside.units.size(); ++i)
+      testing::expect_same_books(beside.units[i], at_once.units[i]);
   }
 }
 

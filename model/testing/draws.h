@@ -24,10 +24,25 @@ inline std::vector<std::array<unsigned, 5>> listed(std::span<const QuadWork> qua
   return all;
 }
 
-// One draw of rectangles, each over all of a square frame of `size` pixels a side.
-inline Trace rectangles(std::uint32_t size, std::uint32_t count) {
+// One draw of triangles on a square frame of `size` pixels a side, of vertices that are positions x y z w.
+template <typename Positions, typename Indices>
+Trace positions_drawn(std::uint32_t size, const Positions& positions, const Indices& indices,
+                      const ShaderText& program) {
   Trace trace;
   trace.width = trace.height = size;
+  trace.buffers = {buffer_of(positions), buffer_of(indices)};
+  trace.programs = {program};
+  Draw draw;
+  draw.vertex_stride = 16;
+  draw.attributes = {{0, VertexFormat::float4, 0}};
+  draw.index_buffer = 1;
+  draw.index_count = static_cast<std::uint32_t>(std::size(indices));
+  trace.commands = {draw};
+  return trace;
+}
+
+// One draw of rectangles, each over all of a square frame of `size` pixels a side.
+inline Trace rectangles(std::uint32_t size, std::uint32_t count) {
   std::vector<float> vertices;
   std::vector<std::uint16_t> indices;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -37,15 +52,7 @@ inline Trace rectangles(std::uint32_t size, std::uint32_t count) {
     for (const unsigned corner : {0u, 1u, 2u, 2u, 1u, 3u})
       indices.push_back(static_cast<std::uint16_t>(4 * i + corner));
   }
-  trace.buffers = {buffer_of(vertices), buffer_of(indices)};
-  trace.programs = {{"plain.vs", "vs_1_1\nmov oPos, v0\nmov oD0, v0\n"}};
-  Draw draw;
-  draw.vertex_stride = 16;
-  draw.attributes = {{0, VertexFormat::float4, 0}};
-  draw.index_buffer = 1;
-  draw.index_count = 6 * count;
-  trace.commands = {draw};
-  return trace;
+  return positions_drawn(size, vertices, indices, {"plain.vs", "vs_1_1\nmov oPos, v0\nmov oD0, v0\n"});
 }
 
 }  // namespace splatscope::testing

@@ -73,6 +73,16 @@ struct DrawWork {
   // triangles.
   bool samples_only = false;
 
+  // The part of the same draw that comes next.
+  void append(const DrawWork& part) {
+    const auto behind = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+    behind(shaded_vertices, part.shaded_vertices);
+    behind(triangles, part.triangles);
+    behind(quads, part.quads);
+    behind(texel_blocks, part.texel_blocks);
+    behind(clear_tiles, part.clear_tiles);
+  }
+
   bool is_sampled(std::size_t triangle) const {
     return (triangle / kSampledRun & (sampled_runs_apart - 1)) == 0;
   }

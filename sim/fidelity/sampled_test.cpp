@@ -8,6 +8,7 @@
 #include "model/error.h"
 #include "sim/fidelity/thinning.h"
 #include "sim/testing/random_trace.h"
+#include "sim/testing/same_books.h"
 
 namespace splatscope::sim {
 namespace {
@@ -224,10 +225,8 @@ TEST(Sampled, SmallTracesAreSimulatedWhole) {
     EXPECT_EQ(sampled.cycles_plus_minus, 0);
     EXPECT_EQ(sampled.command_ends, simulated.command_ends);
     ASSERT_EQ(sampled.units.size(), simulated.units.size());
-    for (std::size_t i = 0; i < simulated.units.size(); ++i) {
-      EXPECT_EQ(sampled.units[i].busy, simulated.units[i].busy);
-      EXPECT_EQ(sampled.units[i].blocked_by, simulated.units[i].blocked_by);
-    }
+    for (std::size_t i = 0; i < simulated.units.size(); ++i)
+      testing::expect_same_books(sampled.units[i], simulated.units[i]);
     EXPECT_EQ(sampled.units_left_out, simulated.units_left_out);
   }
 }
