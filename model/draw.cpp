@@ -1,5 +1,6 @@
 #include "model/draw.h"
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <oneapi/tbb/task_arena.h>
@@ -67,15 +68,9 @@ struct DrawInFlight {
 // A batch of triangles on its way.
 class Batch {
  public:
-  Batch(const RenderOptions& options, std::uint32_t width, std::uint32_t height)
-      : geometry(options, primitive::Viewport{width, height}),
-        pipe(geometry.attributes(), width, options.formats,
-             [this](const auto& colors, auto pixels) { take(colors, pixels); }) {}
-
   void bind(std::shared_ptr<DrawInFlight> next) {
-    geometry.bind(next->bindings);
-    pipe.bind(next->bindings);
-    draw = std::move(next);  // after these: they look at the one before
+    draw = std::move(next);
+    geometry.bind(draw->bindings);
     packs_ = output::packs(state(), draw->frame.formats);
   }
 
@@ -103,7 +98,7 @@ class Batch {
   // Room for the windows of one band; they are kept once it is added.
   Windows room() {
     if (windows_.size() < window_count_ + raster::kMaxWindows)
-      windows_.resize(2 * window_count_ + raster::kMaxWindows);
+      windows_.resize(window_count_ + window_count_ / 2 + raster::kMaxWindows);
     return std::span(windows_).subspan(window_count_).first<raster::kMaxWindows>();
   }
   void add(const Band& band) {
@@ -112,6 +107,18 @@ class Batch {
   }
   std::span<const raster::Window> windows() const { return std::span(windows_).first(window_count_); }
 
+  // What is shaded: it is written at once, or waits for write().
+  void take(const FragmentPipe::Colors& colors, std::span<const std::uint32_t> pixels) {
+    if (at_once) return output::write_colors(colors, pixels, state(), draw->frame);
+    const std::size_t first = pixels_.size();
+    pixels_.insert(pixels_.end(), pixels.begin(), pixels.end());
+    const auto room = [&](auto& values) {
+      values.resize(pixels_.size() + output::kLanes);
+      return values.data() + first;
+    };
+    if (packs_) return output::pack_colors(colors, pixels.size(), state(), room(packed_));
+    for (std::size_t c = 0; c < 4; ++c) std::copy_n(colors[c], pixels.size(), room(colors_[c]));
+  }
   void write() {
     if (packs_) return output::write_packed(packed_, pixels_, state(), draw->frame);
     const auto& [r, g, b, a] = colors_;
@@ -126,8 +133,7 @@ class Batch {
 
   std::shared_ptr<DrawInFlight> draw;
   GeometryBatch geometry;
-  DrawWork part;  // of the draw's record: what is noted and not given away
-  FragmentPipe pipe;
+  DrawWork part;         // of the draw's record: what is noted and not given away
   bool at_once = false;  // depth, shading and writing together, when its turn to be written comes
   std::vector<Band> bands;
 
@@ -144,18 +150,6 @@ class Batch {
     part.clear_tiles.clear();
   }
 
-  void take(const FragmentPipe::Colors& colors, std::span<const std::uint32_t> pixels) {
-    if (at_once) return output::write_colors(colors, pixels, state(), draw->frame);
-    const std::size_t first = pixels_.size();
-    pixels_.insert(pixels_.end(), pixels.begin(), pixels.end());
-    const auto room = [&](auto& values) {
-      values.resize(pixels_.size() + output::kLanes);
-      return values.data() + first;
-    };
-    if (packs_) return output::pack_colors(colors, pixels.size(), state(), room(packed_));
-    for (std::size_t c = 0; c < 4; ++c) std::copy_n(colors[c], pixels.size(), room(colors_[c]));
-  }
-
   std::ptrdiff_t vertices_given_ = 0;    // of the shaded ones
   std::vector<raster::Window> windows_;  // of all bands
   std::size_t window_count_ = 0;
@@ -164,6 +158,44 @@ class Batch {
   std::vector<std::uint32_t> pixels_, packed_;
   std::array<std::vector<float>, 4> colors_;
   std::atomic<bool> handed_back_ = true;
+};
+
+// A stage that is bound to a draw, and to the next one that it is asked to work on.
+template <typename Stage>
+class OfDraws {
+ public:
+  template <typename... Arguments>
+  explicit OfDraws(const Arguments&... arguments) : stage_(arguments...) {}
+
+  Stage& of(const std::shared_ptr<DrawInFlight>& draw) {
+    if (draw == draw_) return stage_;
+    stage_.bind(draw->bindings);
+    draw_ = draw;  // after that: it looks at the one before
+    return stage_;
+  }
+
+ private:
+  Stage stage_;
+  std::shared_ptr<DrawInFlight> draw_;
+};
+
+// What a thread works with, on one batch after the other.
+class Worker {
+ public:
+  Worker(const RenderOptions& options, std::uint32_t width, std::uint32_t height)
+      : geometry_(options, primitive::Viewport{width, height}), pipe_(width, options.formats) {}
+
+  void process(Batch& batch) { geometry_.of(batch.draw).process(batch.geometry); }
+  FragmentPipe& pipe(Batch& batch) {
+    FragmentPipe& pipe = pipe_.of(batch.draw);
+    pipe.begin(batch.geometry.attributes(),
+               [&batch](const auto& colors, auto pixels) { batch.take(colors, pixels); });
+    return pipe;
+  }
+
+ private:
+  OfDraws<Geometry> geometry_;
+  OfDraws<FragmentPipe> pipe_;
 };
 
 // The stages behind the geometry: depth is tested and colours are written batch by batch, in their order;
@@ -189,20 +221,21 @@ class LaterStages {
   }
 
   // Any number of batches at a time.
-  static void shade(Batch& batch) {
+  static void shade(Batch& batch, Worker& worker) {
     if (batch.at_once) return;
+    FragmentPipe& pipe = worker.pipe(batch);
     std::size_t first = 0;
     for (const Band& band : batch.bands) {
-      push(batch, band, batch.windows().subspan(first, band.count));
+      push(pipe, batch, band, batch.windows().subspan(first, band.count));
       first += band.count;
     }
-    batch.pipe.flush();
+    pipe.flush();
   }
 
   // One batch at a time.
-  void write(Batch& batch) {
+  void write(Batch& batch, Worker& worker) {
     if (batch.at_once) {
-      do_at_once(batch);
+      do_at_once(batch, worker.pipe(batch));
       waiting_.fetch_sub(1, std::memory_order_release);
     } else {
       batch.write();
@@ -211,27 +244,28 @@ class LaterStages {
   }
 
   // All of it, where there is but one thread.
-  void test_shade_and_write(Batch& batch) {
+  void test_shade_and_write(Batch& batch, Worker& worker) {
     batch.begin(true);
-    do_at_once(batch);
+    do_at_once(batch, worker.pipe(batch));
     give_part(batch);
   }
 
  private:
-  static void push(Batch& batch, const Band& band, std::span<const raster::Window> windows) {
-    batch.pipe.push_band(batch.geometry.piece(band.piece), windows, band.noted ? &batch.part : nullptr);
+  static void push(FragmentPipe& pipe, Batch& batch, const Band& band,
+                   std::span<const raster::Window> windows) {
+    pipe.push_band(batch.geometry.piece(band.piece), windows, band.noted ? &batch.part : nullptr);
   }
 
-  void do_at_once(Batch& batch) {
+  void do_at_once(Batch& batch, FragmentPipe& pipe) {
     rasterize(
         batch, [&] { return Windows(windows_); },
-        [&](const Band& band) { push(batch, band, std::span(windows_).first(band.count)); },
+        [&](const Band& band) { push(pipe, batch, band, std::span(windows_).first(band.count)); },
         [&] {
           if (batch.part.quads.size() < kQuadsAPart) return;
-          batch.pipe.flush();
+          pipe.flush();
           give_part(batch);
         });
-    batch.pipe.flush();
+    pipe.flush();
   }
 
   // Who takes it may use oneTBB too, and is not to take up other stages while it waits there.
@@ -340,16 +374,15 @@ class DrawPipeline::State {
  public:
   State(const RenderOptions& options, std::uint32_t width, std::uint32_t height, RenderCounters& counters)
       : options_(options),
-        width_(width),
-        height_(height),
         indices_(options.vertex_cache_entries),
+        workers_([&options, width, height] { return Worker(options, width, height); }),
         stages_(options.record, counters) {}
 
   void run(Frame& frame, const Next& next, const Done& done) {
     draw_ = nullptr;
     stages_.begin(done);
     const std::size_t threads = thread_count(), batches = threads > 1 ? kBatchesAThread * threads : 1;
-    while (batches_.size() < batches) batches_.push_back(std::make_unique<Batch>(options_, width_, height_));
+    while (batches_.size() < batches) batches_.push_back(std::make_unique<Batch>());
     threads > 1 ? run_in_flight(batches, frame, next) : run_one_by_one(frame, next);
   }
 
@@ -369,9 +402,10 @@ class DrawPipeline::State {
 
   void run_one_by_one(Frame& frame, const Next& next) {
     Batch& only = *batches_[0];
+    Worker& worker = workers_.local();
     while (fill(only, frame, next)) {
-      only.geometry.process();
-      stages_.test_shade_and_write(only);
+      worker.process(only);
+      stages_.test_shade_and_write(only, worker);
     }
   }
 
@@ -394,19 +428,20 @@ class DrawPipeline::State {
       });
     };
     tbb::parallel_pipeline(
-        batches, tbb::make_filter<void, Batch*>(filter_mode::serial_in_order, fill_next) &
-                     stage(filter_mode::parallel, [](Batch& batch) { batch.geometry.process(); }) &
-                     stage(filter_mode::serial_in_order, [&](Batch& batch) { stages_.test_depth(batch); }) &
-                     stage(filter_mode::parallel, [](Batch& batch) { LaterStages::shade(batch); }) &
-                     tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
-                       stages_.write(*batch);
-                       batch->hand_back();
-                     }));
+        batches,
+        tbb::make_filter<void, Batch*>(filter_mode::serial_in_order, fill_next) &
+            stage(filter_mode::parallel, [&](Batch& batch) { workers_.local().process(batch); }) &
+            stage(filter_mode::serial_in_order, [&](Batch& batch) { stages_.test_depth(batch); }) &
+            stage(filter_mode::parallel, [&](Batch& batch) { LaterStages::shade(batch, workers_.local()); }) &
+            tbb::make_filter<Batch*, void>(filter_mode::serial_in_order, [&](Batch* batch) {
+              stages_.write(*batch, workers_.local());
+              batch->hand_back();
+            }));
   }
 
   const RenderOptions& options_;
-  std::uint32_t width_, height_;
   Indices indices_;
+  tbb::enumerable_thread_specific<Worker> workers_;
   LaterStages stages_;
   std::vector<std::unique_ptr<Batch>> batches_;
   std::shared_ptr<DrawInFlight> draw_;  // of which the next batch is filled; null: of the next one

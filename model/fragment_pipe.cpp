@@ -18,9 +18,8 @@ constexpr std::array<std::uint8_t, 16> kBitsSet = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2,
 
 }  // namespace
 
-FragmentPipe::FragmentPipe(const raster::VertexAttributes& vertices, std::uint32_t width,
-                           const NumberFormats& formats, Write write)
-    : vertices_(vertices), width_(width), formats_(formats), write_(std::move(write)) {
+FragmentPipe::FragmentPipe(std::uint32_t width, const NumberFormats& formats)
+    : width_(width), formats_(formats) {
   attributes_[primitive::kDiffuse] = &batch_.v0;
   attributes_[primitive::kSpecular] = &batch_.v1;
 }
@@ -36,6 +35,11 @@ void FragmentPipe::bind(const DrawBindings& bindings) {
     attributes_[primitive::kTexcoord0 + stage] = &batch_.t[stage];
   if (samples_) attributes_[primitive::kTexcoord0] = &coordinates_;
   batch_ = {};  // what no attribute and no texture gives is 0
+}
+
+void FragmentPipe::begin(const raster::VertexAttributes& vertices, Write write) {
+  vertices_ = &vertices;
+  write_ = std::move(write);
 }
 
 // Window by window, as a rasteriser that visits tiles sends their quads.
@@ -118,7 +122,7 @@ void FragmentPipe::sample(std::size_t count) {
 
 void FragmentPipe::flush() {
   if (count_ == 0) return;
-  raster::interpolate(std::span(pieces_).first(piece_count_), bindings_->attributes, vertices_, places_,
+  raster::interpolate(std::span(pieces_).first(piece_count_), bindings_->attributes, *vertices_, places_,
                       count_, width_, pixels_, attributes_);
   for (const primitive::UsedAttribute& used : bindings_->attributes)
     if (used.attribute <= primitive::kSpecular)

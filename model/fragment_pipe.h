@@ -18,13 +18,13 @@ class FragmentPipe {
   using Colors = std::array<const float*, 4>;  // r, g, b, a: an array each
   using Write = std::function<void(const Colors&, std::span<const std::uint32_t> pixels)>;
 
-  // `vertices`: of the corners of all pieces. `width`: of the frame, in pixels. `write` gets at most
-  // kCapacity fragments at a time.
-  FragmentPipe(const raster::VertexAttributes& vertices, std::uint32_t width, const NumberFormats& formats,
-               Write write);
+  // `width`: of the frame, in pixels.
+  FragmentPipe(std::uint32_t width, const NumberFormats& formats);
 
   // From now on, with nothing in it, it takes fragments of this draw, until it is bound to the next.
   void bind(const DrawBindings& bindings);
+  // And of pieces whose corners are these. `write` gets at most kCapacity fragments at a time.
+  void begin(const raster::VertexAttributes& vertices, Write write);
 
   // The windows of one band of a piece, which stays where it is until all is flushed. `work`: where its quads
   // are noted, with the texel blocks that each one reads; or null.
@@ -40,7 +40,7 @@ class FragmentPipe {
   void note_blocks(std::span<const std::uint32_t> blocks);
 
   const DrawBindings* bindings_ = nullptr;
-  const raster::VertexAttributes& vertices_;
+  const raster::VertexAttributes* vertices_ = nullptr;
   std::uint32_t width_;
   const NumberFormats& formats_;
   DrawWork* work_ = nullptr;

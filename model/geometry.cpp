@@ -26,28 +26,6 @@ bool are_same(std::span<const Vec4> a, std::span<const Vec4> b) {
 
 }  // namespace
 
-GeometryBatch::GeometryBatch(const RenderOptions& options, const primitive::Viewport& viewport)
-    : options_(options), viewport_(viewport) {
-  for (auto* values : {&projected_.x, &projected_.y, &projected_.z, &projected_.inverse_w})
-    values->resize(kVertices);
-  projected_.outside.resize(kVertices);
-}
-
-void GeometryBatch::bind(const DrawBindings& bindings) {
-  const DrawBindings* const before = std::exchange(bindings_, &bindings);
-  if (before != nullptr && &before->vertex == &bindings.vertex &&
-      before->draw.attributes == bindings.draw.attributes &&
-      are_same(before->draw.constants, bindings.draw.constants))
-    return;
-  program_.emplace(bindings.vertex, bindings.draw.constants);
-  const unsigned read = bindings.vertex.inputs_read();
-  vertex::fill_defaults(program_->input(), read);
-  vertex::fill_defaults(program_->grouped_input(), read);
-  inputs_.clear();
-  std::ranges::copy_if(bindings.draw.attributes, std::back_inserter(inputs_),
-                       [&](const VertexAttribute& a) { return (read >> a.input & 1u) != 0; });
-}
-
 void GeometryBatch::clear() {
   vertices.clear();
   shaded_vertices.clear();
@@ -68,41 +46,80 @@ void GeometryBatch::each_attribute(Function function) {
   }
 }
 
-void GeometryBatch::process() {
-  shade();
-  for (std::size_t first = 0; first < triangles.size(); first += raster::Corners::kCapacity) {
-    const std::size_t count = std::min(triangles.size() - first, raster::Corners::kCapacity);
-    // Of quads, triangles 2n and 2n + 1 are of vertices 4n to 4n + 3.
-    const auto outside = std::span(projected_.outside).subspan(2 * first, only_quads ? 2 * count : 0);
-    if (only_quads && std::reduce(outside.begin(), outside.end(), 0, std::bit_or{}) == 0) {
-      set_up_quads(first, count);
-    } else {
-      for (BatchTriangle& triangle : std::span(triangles).subspan(first, count)) assemble(triangle);
-      set_up();
-    }
-  }
-}
-
 vertex::NextVertices GeometryBatch::next_vertices(std::size_t first) const {
   const std::size_t count = std::min<std::size_t>(vertices.size() - first, vertex::kBatch);
   return {bindings_->vertices.bytes, bindings_->draw.vertex_stride,
           std::span(vertices).subspan(first, count)};
 }
 
-void GeometryBatch::shade() {
-  static_assert(kVertices % vertex::kBatch == 0 && vertex::kBatch % primitive::kProjectionLanes == 0);
+std::span<raster::TriangleSetup> GeometryBatch::last_setups(std::size_t count) {
+  if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
+  return std::span(setups_).first(piece_corners_.size()).last(count);
+}
+
+std::int64_t GeometryBatch::pixels_at_most() const {
+  std::int64_t pixels = 0;
+  for (const raster::TriangleSetup& setup : std::span(setups_).first(piece_corners_.size()))
+    if (setup.covers) pixels += std::int64_t{setup.right - setup.left} * (setup.bottom - setup.top);
+  return pixels;
+}
+
+Geometry::Geometry(const RenderOptions& options, const primitive::Viewport& viewport)
+    : options_(options), viewport_(viewport) {
+  for (auto* values : {&projected_.x, &projected_.y, &projected_.z, &projected_.inverse_w})
+    values->resize(GeometryBatch::kVertices);
+  projected_.outside.resize(GeometryBatch::kVertices);
+}
+
+void Geometry::bind(const DrawBindings& bindings) {
+  const DrawBindings* const before = std::exchange(bindings_, &bindings);
+  if (before != nullptr && &before->vertex == &bindings.vertex &&
+      before->draw.attributes == bindings.draw.attributes &&
+      are_same(before->draw.constants, bindings.draw.constants))
+    return;
+  program_.emplace(bindings.vertex, bindings.draw.constants);
+  const unsigned read = bindings.vertex.inputs_read();
+  vertex::fill_defaults(program_->input(), read);
+  vertex::fill_defaults(program_->grouped_input(), read);
+  inputs_.clear();
+  std::ranges::copy_if(bindings.draw.attributes, std::back_inserter(inputs_),
+                       [&](const VertexAttribute& a) { return (read >> a.input & 1u) != 0; });
+}
+
+void Geometry::process(GeometryBatch& batch) {
+  batch_ = &batch;
+  batch.setups_.reserve(batch.triangles.size());
+  batch.piece_corners_.reserve(batch.triangles.size());
+  shade();
+  for (std::size_t first = 0; first < batch.triangles.size(); first += raster::Corners::kCapacity) {
+    const std::size_t count = std::min(batch.triangles.size() - first, raster::Corners::kCapacity);
+    // Of quads, triangles 2n and 2n + 1 are of vertices 4n to 4n + 3.
+    const auto outside = std::span(projected_.outside).subspan(2 * first, batch.only_quads ? 2 * count : 0);
+    if (batch.only_quads && std::reduce(outside.begin(), outside.end(), 0, std::bit_or{}) == 0) {
+      set_up_quads(first, count);
+    } else {
+      for (BatchTriangle& triangle : std::span(batch.triangles).subspan(first, count)) assemble(triangle);
+      set_up();
+    }
+  }
+}
+
+void Geometry::shade() {
+  static_assert(GeometryBatch::kVertices % vertex::kBatch == 0 &&
+                vertex::kBatch % primitive::kProjectionLanes == 0);
+  const std::span<const std::uint32_t> vertices = batch_->vertices;
   const vertex::OutputBatch& out = program_->output();
   const auto& position = out.o[vertex::oPos];
   for (std::size_t first = 0; first < vertices.size(); first += vertex::kBatch) {
     const std::size_t count = std::min<std::size_t>(vertices.size() - first, vertex::kBatch);
-    const unsigned grouped = vertex::fetch_grouped(
-        inputs_, bindings_->vertices.bytes, bindings_->draw.vertex_stride,
-        std::span(vertices).subspan(first, count), program_->input(), program_->grouped_input());
-    program_->run(static_cast<int>(count), grouped, next_vertices(first + count));
+    const unsigned grouped =
+        vertex::fetch_grouped(inputs_, bindings_->vertices.bytes, bindings_->draw.vertex_stride,
+                              vertices.subspan(first, count), program_->input(), program_->grouped_input());
+    program_->run(static_cast<int>(count), grouped, batch_->next_vertices(first + count));
     primitive::project({position[0], position[1], position[2], position[3]}, count, viewport_, projected_,
                        first);
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(position[c], count, positions_[c].data() + first);
-    each_attribute([&](std::vector<float>& values, std::size_t attribute, std::size_t c) {
+    batch_->each_attribute([&](std::vector<float>& values, std::size_t attribute, std::size_t c) {
       const std::span from(out.o[vertex::oD0 + attribute][c], count);  // both orders are D0, D1, T0, T1, ...
       const auto to = values.begin() + static_cast<std::ptrdiff_t>(first);
       if (attribute <= primitive::kSpecular) {
@@ -115,15 +132,15 @@ void GeometryBatch::shade() {
 }
 
 // assemble() and set_up() of triangles of which nothing is outside.
-void GeometryBatch::set_up_quads(std::size_t first, std::size_t count) {
+void Geometry::set_up_quads(std::size_t first, std::size_t count) {
   static_assert(2 * raster::Corners::kCapacity % raster::kQuadVertices == 0 &&
-                kVertices % raster::kQuadVertices == 0);
-  std::ranges::transform(std::span(triangles).subspan(first, count), std::back_inserter(piece_corners_),
-                         &BatchTriangle::vertices);
-  raster::set_up_quads(projected_, 2 * first, setup_options(), last_setups(count));
+                GeometryBatch::kVertices % raster::kQuadVertices == 0);
+  std::ranges::transform(std::span(batch_->triangles).subspan(first, count),
+                         std::back_inserter(batch_->piece_corners_), &BatchTriangle::vertices);
+  raster::set_up_quads(projected_, 2 * first, setup_options(), batch_->last_setups(count));
 }
 
-void GeometryBatch::assemble(BatchTriangle& triangle) {
+void Geometry::assemble(BatchTriangle& triangle) {
   const auto [a, b, c] = triangle.vertices;
   const auto& outside = projected_.outside;
   if (((outside[a] | outside[b] | outside[c]) & primitive::kNotPlain) != 0) return assemble_slowly(triangle);
@@ -141,12 +158,12 @@ void GeometryBatch::assemble(BatchTriangle& triangle) {
 }
 
 // With a corner that is not plain: rejected, or clipped.
-void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
+void Geometry::assemble_slowly(BatchTriangle& triangle) {
   primitive::ClipTriangle corners{};
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     const std::size_t vertex = triangle.vertices[corner];
     for (std::size_t c = 0; c < 4; ++c) corners[corner].position[c] = positions_[c][vertex];
-    each_attribute([&](const std::vector<float>& values, std::size_t attribute, std::size_t c) {
+    batch_->each_attribute([&](const std::vector<float>& values, std::size_t attribute, std::size_t c) {
       corners[corner].attributes[attribute][c] = values[vertex];
     });
   }
@@ -154,12 +171,13 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
       primitive::assemble(corners, viewport_, bindings_->attributes, clipped_);
   triangle.outcome = assembled.outcome;
   triangle.pieces = static_cast<std::uint8_t>(assembled.pieces);
-  static_assert(kVertices + kTriangles * primitive::kMaxPieces * kCorners < 1u << 16);
+  static_assert(GeometryBatch::kVertices + GeometryBatch::kTriangles * primitive::kMaxPieces * kCorners <
+                1u << 16);
   for (std::size_t piece = 0; piece < triangle.pieces; ++piece) {
     std::array<std::uint16_t, kCorners> places;
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
-      places[corner] = static_cast<std::uint16_t>(kVertices + clipped_corners_++);
-      each_attribute([&](std::vector<float>& values, std::size_t attribute, std::size_t c) {
+      places[corner] = static_cast<std::uint16_t>(GeometryBatch::kVertices + batch_->clipped_corners_++);
+      batch_->each_attribute([&](std::vector<float>& values, std::size_t attribute, std::size_t c) {
         values.push_back(clipped_[piece][corner].attributes[attribute][c]);
       });
     }
@@ -172,32 +190,20 @@ void GeometryBatch::assemble_slowly(BatchTriangle& triangle) {
 }
 
 // By value: three words written and then read as fewer, larger ones make a processor wait.
-void GeometryBatch::add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c) {
+void Geometry::add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c) {
   if (waiting_ == raster::Corners::kCapacity) set_up();
-  piece_corners_.push_back({a, b, c});
+  batch_->piece_corners_.push_back({a, b, c});
   ++waiting_;
 }
 
-void GeometryBatch::set_up() {
-  raster::set_up(corners_, setup_options(), last_setups(waiting_));
+void Geometry::set_up() {
+  raster::set_up(corners_, setup_options(), batch_->last_setups(waiting_));
   waiting_ = 0;
 }
 
-raster::SetupOptions GeometryBatch::setup_options() const {
+raster::SetupOptions Geometry::setup_options() const {
   const int bits = options_.formats.subpixel_bits;
   return {viewport_, bits, raster::driver_rounding(bits), !bindings_->attributes.empty()};
-}
-
-std::span<raster::TriangleSetup> GeometryBatch::last_setups(std::size_t count) {
-  if (setups_.size() < piece_corners_.size()) setups_.resize(piece_corners_.size());
-  return std::span(setups_).first(piece_corners_.size()).last(count);
-}
-
-std::int64_t GeometryBatch::pixels_at_most() const {
-  std::int64_t pixels = 0;
-  for (const raster::TriangleSetup& setup : std::span(setups_).first(piece_corners_.size()))
-    if (setup.covers) pixels += std::int64_t{setup.right - setup.left} * (setup.bottom - setup.top);
-  return pixels;
 }
 
 std::array<std::uint16_t, 3> indices_at(const Buffer& indices, std::size_t first) {

@@ -20,15 +20,13 @@ struct BatchTriangle {
   TriangleOutcome outcome = TriangleOutcome::drawn;
 };
 
+// What passes from stage to stage; what a stage works in is its thread's (Geometry).
 class GeometryBatch {
  public:
-  static constexpr std::size_t kVertices = 1024, kTriangles = 2560;  // at most
+  static constexpr std::size_t kVertices = 640, kTriangles = 1600;  // at most
 
-  GeometryBatch(const RenderOptions& options, const primitive::Viewport& viewport);
-
-  // From now on it takes triangles of this draw, until it is bound to the next. What differs from the draw
-  // before is made ready anew.
-  void bind(const DrawBindings& bindings);
+  // From now on it takes triangles of this draw, until it is bound to the next.
+  void bind(const DrawBindings& bindings) { bindings_ = &bindings; }
 
   // ---- filled by Indices
   std::vector<std::uint32_t> vertices;         // vertex numbers, base_vertex added
@@ -40,9 +38,7 @@ class GeometryBatch {
   // Those from number `first` on that are shaded together.
   vertex::NextVertices next_vertices(std::size_t first) const;
 
-  // Shades the vertices, assembles and sets up the triangles.
-  void process();
-
+  // ---- filled by Geometry
   // The pieces of all triangles, in order.
   raster::Piece piece(std::size_t i) const {
     const auto [a, b, c] = piece_corners_[i];
@@ -54,31 +50,51 @@ class GeometryBatch {
   std::int64_t pixels_at_most() const;
 
  private:
+  friend class Geometry;
+
+  template <typename Function>
+  void each_attribute(Function function);
+  std::span<raster::TriangleSetup> last_setups(std::size_t count);  // of the last pieces
+
+  const DrawBindings* bindings_ = nullptr;
+  raster::VertexAttributes attributes_;  // of the vertices, and behind them of clipped corners
+  std::uint32_t clipped_corners_ = 0;
+  std::vector<raster::TriangleSetup> setups_;  // of each piece; those behind the last one are left over
+  std::vector<std::array<std::uint16_t, 3>> piece_corners_;  // their places in `attributes_`
+};
+
+// Vertex unit, primitive assembly and triangle setup, on one batch at a time.
+class Geometry {
+ public:
+  Geometry(const RenderOptions& options, const primitive::Viewport& viewport);
+
+  // From now on it takes batches of this draw, until it is bound to the next. What differs from the draw
+  // before is made ready anew.
+  void bind(const DrawBindings& bindings);
+
+  // Shades the vertices, assembles and sets up the triangles.
+  void process(GeometryBatch& batch);
+
+ private:
   void shade();
   void set_up_quads(std::size_t first, std::size_t count);
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);
-  template <typename Function>
-  void each_attribute(Function function);
   void add_piece(std::uint16_t a, std::uint16_t b, std::uint16_t c);
   void set_up();
   raster::SetupOptions setup_options() const;
-  std::span<raster::TriangleSetup> last_setups(std::size_t count);  // of the last pieces
 
-  const DrawBindings* bindings_ = nullptr;
   const RenderOptions& options_;
   primitive::Viewport viewport_;
+  const DrawBindings* bindings_ = nullptr;
+  GeometryBatch* batch_ = nullptr;       // that is worked on
   std::vector<VertexAttribute> inputs_;  // that the program reads
   std::optional<vertex::VertexProgram::Bound> program_;
-  std::array<std::array<float, kVertices>, 4> positions_;  // x y z w
-  raster::VertexAttributes attributes_;  // of the vertices, and behind them of clipped corners
-  std::uint32_t clipped_corners_ = 0;
+  std::array<std::array<float, GeometryBatch::kVertices>, 4> positions_;  // x y z w
   primitive::ProjectedVertices projected_;
   std::array<primitive::WindowTriangle, primitive::kMaxPieces> clipped_;
-  raster::Corners corners_;                    // of the last pieces, which are not set up yet
-  std::size_t waiting_ = 0;                    // how many these are
-  std::vector<raster::TriangleSetup> setups_;  // of each piece; those behind the last one are left over
-  std::vector<std::array<std::uint16_t, 3>> piece_corners_;  // their places in `attributes_`
+  raster::Corners corners_;  // of the last pieces, which are not set up yet
+  std::size_t waiting_ = 0;  // how many these are
 };
 
 // Three indices of a buffer, from number `first`: those of a triangle of a list. They lie within it.
