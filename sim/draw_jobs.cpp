@@ -190,7 +190,6 @@ void give_work(DrawJob& job, const DrawWork& work, bool samples_suffice) {
     throw ModelError("the work record of command " + std::to_string(work.command) + " holds samples only");
   if (work.command != job.command)
     throw ModelError("command " + std::to_string(job.command) + " of the trace has no work record");
-  job.work = &work;
   if (!adds_up(work, *job.draw))
     throw ModelError("the work record of command " + std::to_string(work.command) + " does not add up");
   job.triangles_clipped = clipped_triangles(work);

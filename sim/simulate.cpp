@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "sim/work_parts.h"
+#include "sim/work_window.h"
 
 namespace splatscope::sim {
 namespace {

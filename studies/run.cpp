@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <exception>
 #include <future>
 
@@ -156,20 +158,29 @@ FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity
   return run;
 }
 
-// The function of the next draws beside the time of this one.
+// How much of a frame's work waits for its time: the more, the less the two wait for one another where one
+// part takes longer than the next; of a small frame little, as its memory would be that of what waits.
+std::size_t parts_ahead(const Trace& trace) {
+  constexpr std::size_t kLeast = 4, kMost = 64, kTriangles = 10000;
+  std::size_t triangles = 0;
+  for (const Command& command : trace.commands)
+    if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
+  return std::clamp(triangles / kTriangles, kLeast, kMost);
+}
+
+// The function of what comes next beside the time of this. One thread is fast enough for it, and holds one
+// batch.
 FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelity,
                     const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
                     const TimingOptions& timing) {
-  WorkQueue queue;
+  WorkQueue queue(parts_ahead(trace));
   std::future<Rendered> function = std::async(std::launch::async, [&] {
     try {
       const auto put = [&](DrawWork& work) {
         if (timing.heat_maps) timing.heat_maps->add(work);
         queue.put(work);
       };
-      return fidelity == Fidelity::sampled
-                 ? render(trace, options, {}, on_frame, [&](DrawWork work) { put(work); })
-                 : render_in_parts(trace, options, {}, on_frame, put);
+      return tbb::task_arena(1).execute([&] { return render_in_parts(trace, options, {}, on_frame, put); });
     } catch (...) {
       queue.fail(std::current_exception());
       throw;
@@ -179,16 +190,11 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
     WorkQueue& queue;
     ~Stop() { queue.stop(); }
   } stop{queue};
-  const auto time = [&] {
-    if (fidelity == Fidelity::sampled)
-      return sim::estimate_sampled_beside(
-          trace, [&](std::size_t) -> const DrawWork& { return queue.next(); }, machine, timing.seed,
-          progress);
-    return sim::simulate_beside(
-        trace, [&]() -> const DrawWork& { return queue.next(); }, machine, scheduler_of(fidelity), progress,
-        timing.observers);
-  };
-  sim::Result result = time();
+  const auto next = [&]() -> const DrawWork& { return queue.next(); };
+  sim::Result result =
+      fidelity == Fidelity::sampled
+          ? sim::estimate_sampled_beside(trace, next, machine, timing.seed, progress)
+          : sim::simulate_beside(trace, next, machine, scheduler_of(fidelity), progress, timing.observers);
   return {function.get(), std::move(result), 0, {}, {}};
 }
 

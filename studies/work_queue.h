@@ -12,17 +12,19 @@
 
 namespace splatscope::studies {
 
-// The work of draws, or parts of it, on its way from where it is computed to the thread that times it. Few
-// wait, so that neither their number nor the scene's size decides how much memory they take.
+// The parts of a frame's work on their way from where it is computed to the thread that times it.
 class WorkQueue {
  public:
-  static constexpr std::size_t kAhead = 4;  // that wait
+  // `ahead`: that wait at most, 2 or more. Who finds no room goes on when half of them are taken, not at each
+  // one.
+  explicit WorkQueue(std::size_t ahead) : ahead_(ahead) {}
 
   // ---- those that compute, one at a time; waits while there is no room. Throws Interrupted after stop().
   // Leaves in its place one that was taken before, if there is one, whose memory can be used again.
   void put(DrawWork& work) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return waiting_.size() < kAhead || stopped_; });
+    if (waiting_.size() == ahead_)
+      changed_.wait(lock, [&] { return waiting_.size() <= ahead_ / 2 || stopped_; });
     if (stopped_) throw Interrupted();
     waiting_.push_back(std::exchange(work, std::move(done_with_)));
     done_with_ = {};
@@ -42,7 +44,7 @@ class WorkQueue {
     if (waiting_.empty()) std::rethrow_exception(failure_);
     done_with_ = std::exchange(taken_, std::move(waiting_.front()));
     waiting_.pop_front();
-    changed_.notify_all();
+    if (waiting_.size() == ahead_ / 2) changed_.notify_all();
     return taken_;
   }
   // What comes is not wanted any more.
@@ -53,6 +55,7 @@ class WorkQueue {
   }
 
  private:
+  const std::size_t ahead_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<DrawWork> waiting_;

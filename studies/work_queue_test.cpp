@@ -23,21 +23,21 @@ void put(WorkQueue& queue, std::uint32_t command) {
 }
 
 TEST(WorkQueue, DrawsComeInOrderThoughFewCanWait) {
-  constexpr std::uint32_t kDraws = 10 * WorkQueue::kAhead;
-  WorkQueue queue;
+  constexpr std::uint32_t kAhead = 4, kDraws = 10 * kAhead;
+  WorkQueue queue(kAhead);
   std::atomic<std::uint32_t> made = 0;
   std::thread maker([&] {
     for (; made < kDraws; ++made) put(queue, made);
   });
   for (std::uint32_t i = 0; i < kDraws; ++i) {
     EXPECT_EQ(queue.next().command, i);
-    EXPECT_LE(made, i + 1 + WorkQueue::kAhead);
+    EXPECT_LE(made, i + 1 + kAhead);
   }
   maker.join();
 }
 
 TEST(WorkQueue, AFailureComesAfterWhatWasMadeBefore) {
-  WorkQueue queue;
+  WorkQueue queue(2);
   put(queue, 7);
   queue.fail(std::make_exception_ptr(std::runtime_error("no more")));
   EXPECT_EQ(queue.next().command, 7u);
@@ -45,7 +45,7 @@ TEST(WorkQueue, AFailureComesAfterWhatWasMadeBefore) {
 }
 
 TEST(WorkQueue, AStopEndsTheOneThatWaitsToPut) {
-  WorkQueue queue;
+  WorkQueue queue(2);
   std::thread maker([&] {
     EXPECT_THROW(
         {

@@ -41,6 +41,7 @@ struct Population {
   std::size_t units = 0;
   double expected = 0;  // clocks of them all
   std::vector<double> sampled_expected, sampled_cycles;
+  std::vector<Books> sampled_books;  // of all samples together, by unit
 
   bool is_sampled() const { return units >= kFewest * kSamples; }
   // Of a draw whose first sample is at `start`, in units of the distance between two.
@@ -106,15 +107,15 @@ enum class Role : std::uint8_t {
 struct Interval {
   Role role = Role::exact;
   Population* population = nullptr;
-  double expected = 0;  // clocks of a sample
+  std::size_t unit = 0;  // of a sample, in its draw
+  double expected = 0;   // clocks of it
 };
 
 class Sampler {
  public:
-  Sampler(const Trace& trace, const WorkSource& work_of, const Machine& machine, std::uint64_t seed,
+  Sampler(const Trace& trace, const PartSource& next_part, const Machine& machine, std::uint64_t seed,
           const std::function<void(double)>& progress)
       : trace_(trace),
-        work_of_(work_of),
         progress_(progress),
         filling_(stretches_to_fill(machine)),
         start_(kFillings * filling_),
@@ -124,6 +125,7 @@ class Sampler {
     stretches_.emplace(trace, machine, layout_, draws);
     count_units();
     machine_ = build_machine(trace, std::move(draws), layout_, machine, Scheduler::skip_ahead);
+    parts_.emplace(next_part, machine_->of_draws);
     machine_->command->on_draw([this](std::uint32_t draw) { begin(draw); });
     intervals_.emplace_back();
   }
@@ -133,8 +135,8 @@ class Sampler {
     note(0);
     machine_->run();
     note(machine_->cycles());
-    if (notes_.size() != intervals_.size() + 1)
-      throw ModelError("sampling: a mark of a thinned draw was not met, or met twice");
+    end_draw();
+    if (notes_.size() != intervals_.size() + 1) throw_marks_differ();
     weigh();
     Result result;
     result.cycles = static_cast<Cycle>(std::llround(estimated(machine_->cycles())));
@@ -151,11 +153,6 @@ class Sampler {
   }
 
  private:
-  struct Note {
-    Cycle at;
-    std::vector<Books> books;  // by unit
-  };
-
   // Units of a draw between its start and its end.
   std::size_t units_between(std::size_t triangles) const {
     const std::size_t stretches = triangles / kStretch;
@@ -174,70 +171,99 @@ class Sampler {
     }
   }
 
-  // Of one draw, when its work is at hand. Each has a start of its own: samples at equal distances through
-  // all would fall in step with draws that are alike.
+  // The next one. Each has a start of its own: samples at equal distances through all would fall in step with
+  // draws that are alike.
   void begin(std::uint32_t draw) {
     if (progress_) progress_(static_cast<double>(draw) / static_cast<double>(machine_->jobs.size()));
+    end_draw();
     DrawJob& job = machine_->jobs[draw];
-    give_work(job, work_of_(draw));
-    Population& population = *population_of_[draw];
-    const std::vector<double> expected = expect(job);
-    for (const double unit : expected) population.expected += unit;
-    if (population.is_sampled())
-      thin(job, population, expected, static_cast<double>(random_() >> 11) * 0x1p-53);
-  }
-
-  // What Stretches expect of every unit.
-  std::vector<double> expect(const DrawJob& job) {
     for (; next_command_ < job.command; ++next_command_)
       if (std::holds_alternative<Clear>(trace_.commands[next_command_])) stretches_->clear();
-    const std::vector<Clocks> clocks = stretches_->of(job);
-    std::vector<double> units(units_between(job.work->triangles.size()));
-    for (std::size_t i = 0; i < units.size() * kUnit; ++i)
-      units[i / kUnit] += *std::ranges::max_element(clocks[start_ + i]);
-    return units;
+    Population& population = *population_of_[draw];
+    if (!population.is_sampled()) return parts_->begin(job, {}, nullptr);
+    sampled_ = &population;
+    stretches_->begin(job);
+    parts_->begin(job, thin(job, static_cast<double>(random_() >> 11) * 0x1p-53), &*stretches_);
   }
 
-  void thin(DrawJob& job, Population& population, const std::vector<double>& expected, double start) {
-    ThinDraw& thin = thin_.emplace(job);  // in place of the one before, which is done
-    const std::size_t triangles = job.work->triangles.size();
+  // Which triangles of a draw run, and an interval of each span of them.
+  std::vector<Span> thin(DrawJob& job, double start) {
+    const std::size_t triangles = job.draw->index_count / 3;
     const std::size_t stretches = (triangles + kStretch - 1) / kStretch;
-    std::size_t kept = 0;  // stretches
-    const auto keep = [&](std::size_t from, std::size_t to, Role role, double clocks) {
+    units_ = units_between(triangles);
+    std::vector<Span> spans;
+    std::size_t kept = 0, thinned = 0;  // stretches, triangles
+    marks_.clear();
+    const auto keep = [&](std::size_t from, std::size_t to, Role role, std::size_t unit = 0) {
       from = std::max(from, kept);
-      to = std::min(to, stretches);  // the mark of a part without triangles would never be met
+      to = std::min(to, stretches);  // the mark of a span without triangles would never be met
       if (from >= to) return;
       kept = to;
-      thin.keep(from * kStretch, std::min(to * kStretch, triangles));
-      intervals_.push_back({role, &population, clocks});
+      const Span& span = spans.emplace_back(from * kStretch, std::min(to * kStretch, triangles));
+      marks_.push_back(static_cast<std::uint32_t>(thinned));
+      thinned += span.to - span.from;
+      intervals_.push_back({role, sampled_, unit, 0});
     };
-    keep(0, start_, Role::exact, 0);
-    for (std::size_t unit = 0; unit < expected.size(); ++unit) {
-      if (!population.is_sample(unit, start)) continue;
+    first_interval_ = intervals_.size();
+    keep(0, start_, Role::exact);
+    for (std::size_t unit = 0; unit < units_; ++unit) {
+      if (!sampled_->is_sample(unit, start)) continue;
       const std::size_t first = start_ + unit * kUnit;
-      keep(first - filling_, first, Role::warming, 0);
-      keep(first, first + kUnit, Role::sample, expected[unit]);
+      keep(first - filling_, first, Role::warming);
+      keep(first, first + kUnit, Role::sample, unit);
     }
-    const std::size_t end = start_ + expected.size() * kUnit;
-    keep(end - filling_, end, Role::warming, 0);
-    keep(end, stretches, Role::exact, 0);
-    job = thin.job();
+    const std::size_t end = start_ + units_ * kUnit;
+    keep(end - filling_, end, Role::warming);
+    keep(end, stretches, Role::exact);
+    job.marks = marks_;
+    return spans;
   }
 
+  // What Stretches expect of the units of the draw before, if it was sampled.
+  void end_draw() {
+    if (sampled_ == nullptr) return;
+    const std::vector<Clocks> clocks = stretches_->clocks();
+    std::vector<double> units(units_);
+    for (std::size_t i = 0; i < units.size() * kUnit; ++i)
+      units[i / kUnit] += *std::ranges::max_element(clocks[start_ + i]);
+    for (const double unit : units) sampled_->expected += unit;
+    for (Interval& interval : std::span(intervals_).subspan(first_interval_))
+      if (interval.role == Role::sample) interval.expected = units[interval.unit];
+    sampled_ = nullptr;
+  }
+
+  [[noreturn]] static void throw_marks_differ() {
+    throw ModelError("sampling: a mark of a thinned draw was not met, or met twice");
+  }
+
+  // The end of one interval, and the start of the next.
   void note(Cycle now) {
-    Note& note = notes_.emplace_back(Note{now, {}});
+    std::vector<Books> books;  // by unit
     for (const ClockDomain* domain : {&machine_->core, &machine_->bus}) {
       for (std::size_t place = 0; place < domain->units().size(); ++place)
-        note.books.push_back(domain->closed_books(place, now));
+        books.push_back(domain->closed_books(place, now));
     }
+    if (notes_.size() > intervals_.size()) throw_marks_differ();
+    if (!notes_.empty()) add_books(intervals_[notes_.size() - 1], books);
+    books_ = std::move(books);
+    notes_.push_back(now);
+  }
+
+  void add_books(const Interval& interval, std::span<const Books> books) {
+    if (interval.role == Role::warming) return;
+    std::vector<Books>& sum =
+        interval.role == Role::exact ? exact_books_ : interval.population->sampled_books;
+    sum.resize(books.size());
+    for (std::size_t unit = 0; unit < books.size(); ++unit)
+      for (std::size_t cause = 0; cause < books[unit].cycles.size(); ++cause)
+        sum[unit].cycles[cause] += books[unit].cycles[cause] - books_[unit].cycles[cause];
   }
 
   // How much a cycle of each interval counts.
   void weigh() {
     for (std::size_t i = 0; i < intervals_.size(); ++i) {
       if (intervals_[i].role != Role::sample) continue;
-      intervals_[i].population->sampled_cycles.push_back(
-          static_cast<double>(notes_[i + 1].at - notes_[i].at));
+      intervals_[i].population->sampled_cycles.push_back(static_cast<double>(notes_[i + 1] - notes_[i]));
       intervals_[i].population->sampled_expected.push_back(intervals_[i].expected);
     }
     for (const Interval& interval : intervals_) {
@@ -250,8 +276,8 @@ class Sampler {
   // The cycle of the whole trace for one of the run.
   double estimated(Cycle cycle) const {
     double sum = 0;
-    for (std::size_t i = 0; i < weights_.size() && notes_[i].at < cycle; ++i)
-      sum += weights_[i] * static_cast<double>(std::min(cycle, notes_[i + 1].at) - notes_[i].at);
+    for (std::size_t i = 0; i < weights_.size() && notes_[i] < cycle; ++i)
+      sum += weights_[i] * static_cast<double>(std::min(cycle, notes_[i + 1]) - notes_[i]);
     return sum;
   }
 
@@ -277,10 +303,11 @@ class Sampler {
         double sum = 0;
         Cycle rounded = 0;
         for (std::size_t cause = 0; cause < books.cycles.size(); ++cause) {
-          for (std::size_t i = 0; i < weights_.size(); ++i) {
-            sum += weights_[i] * static_cast<double>(notes_[i + 1].books[number].cycles[cause] -
-                                                     notes_[i].books[number].cycles[cause]);
-          }
+          sum += static_cast<double>(exact_books_[number].cycles[cause]);
+          for (const auto& [state, population] : populations_)
+            if (population.is_sampled())
+              sum +=
+                  population.weight() * static_cast<double>(population.sampled_books[number].cycles[cause]);
           books.cycles[cause] = static_cast<Cycle>(std::llround(sum)) - rounded;
           rounded += books.cycles[cause];
         }
@@ -291,7 +318,6 @@ class Sampler {
   }
 
   const Trace& trace_;
-  const WorkSource& work_of_;
   const std::function<void(double)>& progress_;
   const std::size_t filling_;  // stretches that run before each sample
   const std::size_t start_;    // and at the start of a draw
@@ -301,10 +327,15 @@ class Sampler {
   std::mt19937_64 random_;
   std::map<State, Population> populations_;
   std::vector<Population*> population_of_;  // each draw
-  std::optional<ThinDraw> thin_;            // the last one that was thinned
   std::unique_ptr<SimulatedMachine> machine_;
+  std::optional<ThinParts> parts_;
+  // Of the draw that runs, if it is sampled.
+  Population* sampled_ = nullptr;
+  std::size_t units_ = 0, first_interval_ = 0;
+  std::vector<std::uint32_t> marks_;
   std::vector<Interval> intervals_;  // of the run; interval i begins at notes_[i]
-  std::vector<Note> notes_;
+  std::vector<Cycle> notes_;
+  std::vector<Books> books_, exact_books_;  // at the last note; of all exact intervals together
   std::vector<double> weights_;
 };
 
@@ -313,13 +344,19 @@ class Sampler {
 Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                         std::uint64_t seed) {
   expect_work_of_each_draw(trace, work);
+  auto next = work.begin();
   return estimate_sampled_beside(
-      trace, [&](std::size_t draw) -> const DrawWork& { return work[draw]; }, machine, seed);
+      trace,
+      [&]() -> const DrawWork& {
+        if (next == work.end()) throw ModelError("the work records hold fewer triangles than the draws");
+        return *next++;
+      },
+      machine, seed);
 }
 
-Result estimate_sampled_beside(const Trace& trace, const WorkSource& work_of, const Machine& machine,
+Result estimate_sampled_beside(const Trace& trace, const PartSource& next_part, const Machine& machine,
                                std::uint64_t seed, const std::function<void(double)>& progress) {
-  return Sampler(trace, work_of, machine, seed, progress).result();
+  return Sampler(trace, next_part, machine, seed, progress).result();
 }
 
 }  // namespace splatscope::sim

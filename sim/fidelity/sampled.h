@@ -36,11 +36,9 @@ namespace splatscope::sim {
 Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                         std::uint64_t seed = 1);
 
-// The same while the work is still being computed: `work_of` is asked for that of each draw, in order, just
-// before the draw begins, and may wait for it. It is needed until the next one is asked for. `progress` is
-// told the fraction of the draws that are done as the next one begins.
-using WorkSource = std::function<const DrawWork&(std::size_t draw)>;
-Result estimate_sampled_beside(const Trace& trace, const WorkSource& work_of, const Machine& machine,
+// The same while the work is still being computed, as simulate_beside() does. `progress` is told the fraction
+// of the draws that are done as the next one begins.
+Result estimate_sampled_beside(const Trace& trace, const PartSource& next_part, const Machine& machine,
                                std::uint64_t seed = 1, const std::function<void(double)>& progress = {});
 
 }  // namespace splatscope::sim

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
 #include "model/error.h"
 #include "sim/fidelity/thinning.h"
+#include "sim/testing/cutter.h"
 #include "sim/testing/random_trace.h"
 #include "sim/testing/same_books.h"
 
@@ -231,71 +233,106 @@ TEST(Sampled, SmallTracesAreSimulatedWhole) {
   }
 }
 
-// Each draw's work in the place of the one before it, also of frames that are sampled.
+// In parts, each in the place of the one before it, also of frames that are sampled.
 TEST(Sampled, WorkThatComesAsItIsNeededGivesTheSame) {
   const RandomTrace made = frames_of_two_draws({{kTriangles, 1}, {kTriangles, 4}}, 500);
   const Machine machine = machine::load(machine::kGeForce4);
   const Result at_once = estimate_sampled(made.trace, made.work, machine, 3);
   EXPECT_GT(at_once.cycles_plus_minus, 0);
-  std::size_t asked = 0;
-  DrawWork now;
-  std::vector<double> told;
-  const Result beside = estimate_sampled_beside(
-      made.trace,
-      [&](std::size_t draw) -> const DrawWork& {
-        EXPECT_EQ(draw, asked++);
-        return now = made.work[draw];
-      },
-      machine, 3, [&](double fraction) { told.push_back(fraction); });
-  EXPECT_EQ(asked, made.work.size());
-  EXPECT_EQ(told, (std::vector<double>{0, 0.25, 0.5, 0.75}));
-  EXPECT_EQ(beside.cycles, at_once.cycles);
-  EXPECT_EQ(beside.cycles_plus_minus, at_once.cycles_plus_minus);
-  EXPECT_EQ(beside.command_ends, at_once.command_ends);
-  expect_books_to_add_up(beside);
+  for (const std::size_t most : {1, 100, 10000}) {
+    testing::Cutter cutter(made.work, most, 1);
+    std::vector<double> told;
+    const Result beside = estimate_sampled_beside(
+        made.trace, [&]() -> const DrawWork& { return cutter.next(); }, machine, 3,
+        [&](double fraction) { told.push_back(fraction); });
+    EXPECT_TRUE(cutter.is_at_the_end());
+    EXPECT_EQ(told, (std::vector<double>{0, 0.25, 0.5, 0.75}));
+    EXPECT_EQ(beside.cycles, at_once.cycles);
+    EXPECT_EQ(beside.cycles_plus_minus, at_once.cycles_plus_minus);
+    EXPECT_EQ(beside.command_ends, at_once.command_ends);
+    ASSERT_EQ(beside.units.size(), at_once.units.size());
+    for (std::size_t i = 0; i < beside.units.size(); ++i)
+      testing::expect_same_books(beside.units[i], at_once.units[i]);
+    expect_books_to_add_up(beside);
+  }
 }
 
 TEST(Sampled, WorkThatDoesNotFitTheTraceIsABug) {
   RandomTrace made = splats(100, 7);
   EXPECT_THROW(estimate_sampled(made.trace, {}, Machine{}), ModelError);
-  const WorkSource broken = [](std::size_t) -> const DrawWork& { throw UserError("x", 0, "broken"); };
+  const PartSource broken = []() -> const DrawWork& { throw UserError("x", 0, "broken"); };
   EXPECT_THROW(estimate_sampled_beside(made.trace, broken, Machine{}), UserError);
+  const DrawWork whole = made.work[0];
   made.work[0].quads.pop_back();
   EXPECT_THROW(estimate_sampled(made.trace, made.work, Machine{}), ModelError);
+  made.work[0] = {};
+  EXPECT_THROW(estimate_sampled(made.trace, made.work, Machine{}), ModelError);
+  made.work[0] = splats(99, 7).work[0];
+  EXPECT_THROW(estimate_sampled(made.trace, made.work, Machine{}), ModelError) << "one triangle too few";
+  made.work[0] = whole;
   made.work.push_back(made.work[0]);
   EXPECT_THROW(estimate_sampled(made.trace, made.work, Machine{}), ModelError);
 }
 
-TEST(ThinDraw, KeepsPartsOfADrawAndKnowsWhatLiesBetween) {
+// Has still to look at all of a draw.
+class Keeper final : public DrawUnit {
+ public:
+  using DrawUnit::DrawUnit;
+  Step advance(Cycle) override { return idle(); }
+  std::uint64_t items(const DrawJob&) const override { return 1; }
+  std::uint64_t cuts_passed(const DrawJob& job) const override { return cuts_passed_by_tags(job); }
+};
+
+// However it is cut: the units see what is kept, and behind which of it all else was left out.
+TEST(ThinParts, KeepSpansOfADrawAndWhatLiesBetween) {
   const RandomTrace made = splats(1000, 3);
-  DrawJob whole;
-  whole.draw = &std::get<Draw>(made.trace.commands[1]);
-  whole.command = 1;
-  give_work(whole, made.work[0]);
-  ThinDraw thin(whole);
-  thin.keep(0, 64);
-  thin.keep(64, 128);
-  thin.keep(512, 1000);
-  const DrawJob job = thin.job();
   const DrawWork& all = made.work[0];
-  const DrawWork& kept = *job.work;
-  EXPECT_EQ(kept.triangles.size(), 128u + 488u);
-  ASSERT_EQ(job.marks.size(), 3u);
-  EXPECT_EQ(job.marks[1], 64u);
-  EXPECT_EQ(job.marks[2], 128u);
-  ASSERT_EQ(job.cuts.size(), 1u);
-  const Cut& cut = job.cuts[0];
-  EXPECT_EQ(kept.quads.size() + cut.quads.size(), all.quads.size());
-  EXPECT_EQ(kept.texel_blocks.size() + cut.blocks.size(), all.texel_blocks.size());
-  EXPECT_EQ(cut.quads.data(), &all.quads[cut.quad]);
-  EXPECT_EQ(kept.shaded_vertices.back(), all.shaded_vertices.back());
-  std::size_t quads = 0, vertices = 0;
-  for (const TriangleWork& triangle : kept.triangles) {
-    quads += triangle.quad_count;
-    vertices += triangle.new_vertices;
+  for (const std::size_t most : {1, 100, 10000}) {
+    testing::Cutter cutter(made.work, most, 1);
+    const PartSource next = [&]() -> const DrawWork& { return cutter.next(); };
+    DrawJob job;
+    job.draw = &std::get<Draw>(made.trace.commands[1]);
+    job.command = 1;
+    Completion completion;
+    const Keeper keeper("keeper", completion);
+    const std::array<const DrawUnit*, 1> units{&keeper};
+    ThinParts thin(next, units);
+    thin.begin(job, {{0, 64}, {64, 128}, {512, 1000}}, nullptr);
+    while (!job.is_complete()) thin.take();
+    EXPECT_TRUE(cutter.is_at_the_end());
+    EXPECT_EQ(job.all_triangles, 128u + 488u);
+    std::size_t vertices = 0, quads = 0, blocks = 0, kept_vertices = 0, kept_quads = 0, kept_blocks = 0;
+    std::vector<std::uint32_t> left_vertices, left_blocks;
+    std::vector<QuadWork> left_quads;
+    for (std::uint64_t i = 0; i < job.cuts->end(); ++i) {
+      const Cut& cut = (*job.cuts)[i];
+      left_vertices.insert(left_vertices.end(), cut.vertices.begin(), cut.vertices.end());
+      left_quads.insert(left_quads.end(), cut.quads.begin(), cut.quads.end());
+      left_blocks.insert(left_blocks.end(), cut.blocks.begin(), cut.blocks.end());
+    }
+    std::size_t left_vertex = 0, left_quad = 0, left_block = 0;
+    for (std::size_t triangle = 0; triangle < all.triangles.size(); ++triangle) {
+      const bool is_kept = triangle < 128 || triangle >= 512;
+      for (std::size_t n = all.triangles[triangle].new_vertices; n != 0; --n, ++vertices)
+        EXPECT_EQ(is_kept ? job.shaded_vertices[kept_vertices++] : left_vertices[left_vertex++],
+                  all.shaded_vertices[vertices]);
+      for (std::size_t n = all.triangles[triangle].quad_count; n != 0; --n, ++quads) {
+        const QuadWork& quad = is_kept ? job.quads[kept_quads++] : left_quads[left_quad++];
+        EXPECT_EQ(quad.x, all.quads[quads].x);
+        for (std::size_t k = quad.texel_block_count; k != 0; --k, ++blocks)
+          EXPECT_EQ(is_kept ? job.texel_blocks[kept_blocks++] : left_blocks[left_block++],
+                    all.texel_blocks[blocks]);
+      }
+      if (triangle != 127) continue;
+      for (std::uint64_t i = 0; i < job.cuts->end(); ++i) {
+        EXPECT_EQ((*job.cuts)[i].vertex, kept_vertices);
+        EXPECT_EQ((*job.cuts)[i].quad, kept_quads);
+      }
+    }
+    EXPECT_EQ(left_vertex, left_vertices.size());
+    EXPECT_EQ(left_quad, left_quads.size());
+    EXPECT_EQ(left_block, left_blocks.size());
   }
-  EXPECT_EQ(quads, kept.quads.size());
-  EXPECT_EQ(vertices, kept.shaded_vertices.size());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace splatscope::sim {
 namespace {
@@ -45,30 +46,45 @@ double Stretches::clocks_per_agp_line() const {
          machine_.clock.bus_megahertz;
 }
 
-// What the caches do is counted triangle by triangle, beside the sums of all stretches.
-std::vector<Clocks> Stretches::of(const DrawJob& job) {
-  const std::span<const TriangleWork> all = job.work->triangles;
-  std::vector<Sums> sums((all.size() + kStretch - 1) / kStretch);
-  const tbb::blocked_range<std::size_t> range(0, sums.size(), kStretchesAtOnce);
-  Traffic traffic;
-  tbb::parallel_invoke([&] { traffic = traffic_.of(job); },
-                       [&] {
-                         tbb::parallel_for(range, [&](const auto& some) {
-                           for (std::size_t i = some.begin(); i != some.end(); ++i) {
-                             const std::size_t first = i * kStretch;
-                             sums[i] = sums_of(all.subspan(first, std::min(kStretch, all.size() - first)));
-                           }
-                         });
-                       });
-  std::vector<Clocks> stretches;
-  for (const Sums& stretch : sums) stretches.push_back(clocks_of(job, traffic, stretch, stretches.empty()));
-  return stretches;
+void Stretches::begin(const DrawJob& job) {
+  job_ = &job;
+  triangles_ = 0;
+  sums_.clear();
+  traffic_.begin(job);
 }
 
-Stretches::Sums Stretches::sums_of(std::span<const TriangleWork> triangles) const {
+// What the caches do is counted triangle by triangle, beside the sums of the stretches.
+void Stretches::add(const DrawWork& part) {
+  const std::uint64_t first = std::exchange(triangles_, triangles_ + part.triangles.size());
+  sums_.resize((triangles_ + kStretch - 1) / kStretch);
+  const auto depth = [&] { traffic_.add_depth(part, first); };
+  const auto color = [&] { traffic_.add_color(part, first); };
+  const auto sum = [&](const tbb::blocked_range<std::uint64_t>& stretches) {
+    for (std::uint64_t i = stretches.begin(); i != stretches.end(); ++i) {
+      const std::uint64_t from = std::max(first, i * kStretch), to = std::min(triangles_, (i + 1) * kStretch);
+      add(std::span(part.triangles).subspan(from - first, to - from), sums_[i]);
+    }
+  };
+  const tbb::blocked_range<std::uint64_t> stretches(first / kStretch, sums_.size(), kStretchesAtOnce);
+  if (stretches.is_divisible()) {
+    tbb::parallel_invoke(depth, color, [&] { tbb::parallel_for(stretches, sum); });
+  } else {
+    depth();
+    color();
+    sum(stretches);
+  }
+}
+
+std::vector<Clocks> Stretches::clocks() const {
+  const Traffic traffic = traffic_.traffic();
+  std::vector<Clocks> clocks;
+  for (const Sums& stretch : sums_) clocks.push_back(clocks_of(*job_, traffic, stretch, clocks.empty()));
+  return clocks;
+}
+
+void Stretches::add(std::span<const TriangleWork> triangles, Sums& sums) const {
   const ClocksOf tile_clocks(machine_.raster.tiles_per_clock), quad_clocks(machine_.pixel.quads_per_clock);
-  Sums sums;
-  sums.triangles = triangles.size();
+  sums.triangles += triangles.size();
   for (const TriangleWork& triangle : triangles) {
     sums.vertices += triangle.new_vertices;
     if (triangle.pieces == 0) continue;
@@ -78,7 +94,6 @@ Stretches::Sums Stretches::sums_of(std::span<const TriangleWork> triangles) cons
     sums.quads += triangle.quad_count;
     sums.quads_passed += triangle.quads_passed;
   }
-  return sums;
 }
 
 Clocks Stretches::clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums, bool first) const {

@@ -59,10 +59,12 @@ class Stretches {
   Stretches(const Trace& trace, const Machine& machine, const MemoryLayout& layout,
             const PreparedDraws& draws, const WhatIf& what_if = {});
 
-  // Draws and clears in the order of the trace. Of a draw, its stretches of kStretch triangles in order; the
-  // last may be shorter.
-  std::vector<Clocks> of(const DrawJob& job);
+  // Draws and clears in the order of the trace. All of a draw's work is added, in parts or at once.
   void clear() { traffic_.clear(); }
+  void begin(const DrawJob& job);
+  void add(const DrawWork& part);
+  // Then, of the draw, its stretches of kStretch triangles in order; the last may be shorter.
+  std::vector<Clocks> clocks() const;
 
  private:
   // Of a stretch.
@@ -72,7 +74,7 @@ class Stretches {
     std::uint64_t raster_clocks = 0, quads = 0, quads_passed = 0;
   };
 
-  Sums sums_of(std::span<const TriangleWork> triangles) const;
+  void add(std::span<const TriangleWork> triangles, Sums& sums) const;
   // `first`: of its draw.
   Clocks clocks_of(const DrawJob& job, const Traffic& traffic, const Sums& sums, bool first) const;
   double clocks_per_agp_line() const;
@@ -82,6 +84,9 @@ class Stretches {
   const WhatIf what_if_;
   TrafficCounter traffic_;
   std::vector<double> clocks_per_vertex_;  // by program
+  const DrawJob* job_ = nullptr;
+  std::uint64_t triangles_ = 0;  // of the draw so far
+  std::vector<Sums> sums_;       // of its stretches
 };
 
 }  // namespace splatscope::sim

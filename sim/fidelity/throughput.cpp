@@ -28,9 +28,8 @@ class ThroughputEstimate::State {
     DrawJob& job = draws_.jobs[next_draw_++];
     give_work(job, work, true);
     begin_command();
-    add_draw(job);
+    add_draw(job, work);
     end_command();
-    job.work = nullptr;
   }
 
   Result result() {
@@ -114,10 +113,12 @@ class ThroughputEstimate::State {
     cycles_ += clocks;
   }
 
-  void add_draw(const DrawJob& job) {
-    if (job.work->triangles.empty()) return;  // begins no unit
+  void add_draw(const DrawJob& job, const DrawWork& work) {
+    if (work.triangles.empty()) return;  // begins no unit
+    stretches_.begin(job);
+    stretches_.add(work);
     Clocks busy{};
-    for (const Clocks& stretch : stretches_.of(job)) {
+    for (const Clocks& stretch : stretches_.clocks()) {
       for (std::size_t i = 0; i < kStages; ++i) busy[i] += stretch[i];
       cycles_ += *std::ranges::max_element(stretch);
     }

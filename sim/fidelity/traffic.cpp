@@ -1,7 +1,5 @@
 #include "sim/fidelity/traffic.h"
 
-#include <oneapi/tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -25,16 +23,17 @@ double touch(CacheTags& tags, std::uint32_t line, double fetched, double written
   return bytes;
 }
 
-// look(triangle, its quads, their texel blocks) for each sampled triangle.
+// look(number in the draw, its quads, their texel blocks) for each sampled triangle of a part.
 template <typename Look>
-void each_sample(const DrawWork& work, Look look) {
-  const QuadWork* quad = work.quads.data();
-  const std::uint32_t* block = work.texel_blocks.data();
-  for (std::size_t triangle = 0; triangle < work.triangles.size(); triangle = work.next_recorded(triangle)) {
-    const std::span quads(quad, work.triangles[triangle].quad_count);
+void each_sample(const DrawWork& part, std::uint64_t first, Look look) {
+  const QuadWork* quad = part.quads.data();
+  const std::uint32_t* block = part.texel_blocks.data();
+  const std::uint64_t end = first + part.triangles.size();
+  for (std::uint64_t triangle = first; triangle < end; triangle = part.next_recorded(triangle)) {
+    const std::span quads(quad, part.triangles[triangle - first].quad_count);
     std::size_t blocks = 0;
     for (const QuadWork& each : quads) blocks += each.texel_block_count;
-    if (work.is_sampled(triangle)) look(triangle, quads, std::span(block, blocks));
+    if (part.is_sampled(triangle)) look(triangle, quads, std::span(block, blocks));
     quad += quads.size();
     block += blocks;
   }
@@ -47,41 +46,43 @@ double in_bursts(double bytes, const Machine& machine) {
 }
 
 TrafficCounter::TrafficCounter(const Machine& machine, const MemoryLayout& layout)
-    : machine_(machine), layout_(layout), is_clear_(layout.depth.lines(), 0) {}
+    : machine_(machine),
+      layout_(layout),
+      is_clear_(layout.depth.lines(), 0),
+      depth_tags_(machine.depth.cache_lines, machine.depth.cache_ways),
+      color_tags_(machine.blend.cache_lines, machine.blend.cache_ways),
+      texture_tags_(machine.texture.cache_lines, machine.texture.cache_ways) {}
 
-// Depth and what lies behind it share no cache.
-Traffic TrafficCounter::of(const DrawJob& job) {
-  Traffic traffic;
-  tbb::parallel_invoke([&] { count_depth(job, traffic); }, [&] { count_color(job, traffic); });
-  return traffic;
+void TrafficCounter::begin(const DrawJob& job) {
+  job_ = &job;
+  for (CacheTags* tags : {&depth_tags_, &color_tags_, &texture_tags_}) tags->invalidate(CacheTags::kNoLine);
+  depth_ = color_ = {};
+  texture_bytes_ = texel_blocks_ = 0;
 }
 
-void TrafficCounter::count_depth(const DrawJob& job, Traffic& traffic) {
-  if (!uses_depth(*job.draw)) return;
-  const DrawWork& work = *job.work;
+void TrafficCounter::add_depth(const DrawWork& part, std::uint64_t first_triangle) {
+  if (!uses_depth(*job_->draw)) return;
   const double line_bytes = in_bursts(layout_.depth.line_bytes(), machine_);
-  CacheTags cache(machine_.depth.cache_lines, machine_.depth.cache_ways);
-  auto clear = work.clear_tiles.begin();
-  double count = 0, bytes = 0;
-  each_sample(work,
-              [&](std::size_t triangle, std::span<const QuadWork> quads, std::span<const std::uint32_t>) {
+  auto clear = part.clear_tiles.begin();
+  each_sample(part, first_triangle,
+              [&](std::uint64_t triangle, std::span<const QuadWork> quads, std::span<const std::uint32_t>) {
                 const auto first = clear;
-                for (; clear != work.clear_tiles.end() && clear->triangle <= triangle; ++clear)
+                for (; clear != part.clear_tiles.end() && clear->triangle <= triangle; ++clear)
                   is_clear_[clear->tile] = cleared_;
                 for (const QuadWork& quad : quads) {
-                  const bool is_written = job.draw->state.depth_write && quad.passed != 0;
+                  const bool is_written = job_->draw->state.depth_write && quad.passed != 0;
                   const std::uint32_t line = layout_.depth.line_of(quad);
-                  bytes += touch(cache, line, is_clear_[line] != 0 ? 0 : line_bytes, line_bytes, is_written);
+                  depth_.bytes +=
+                      touch(depth_tags_, line, is_clear_[line] != 0 ? 0 : line_bytes, line_bytes, is_written);
                   if (is_written) is_clear_[line] = 0;
                 }
-                count += static_cast<double>(quads.size());
+                depth_.quads += static_cast<double>(quads.size());
                 for (const ClearTile& tile : std::span(first, clear)) is_clear_[tile.tile] = 0;
               });
-  traffic.depth = bytes / std::max(1.0, count);
 }
 
-void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
-  const Draw& draw = *job.draw;
+void TrafficCounter::add_color(const DrawWork& part, std::uint64_t first_triangle) {
+  const Draw& draw = *job_->draw;
   if (!draw.state.color_write) return;
   const double line_bytes = in_bursts(layout_.color.line_bytes(), machine_);
   const double read_bytes = draw.state.blend ? line_bytes : 0;
@@ -89,22 +90,26 @@ void TrafficCounter::count_color(const DrawJob& job, Traffic& traffic) const {
       in_bursts(draw.source ? machine_.texture.line_bytes : machine_.texture.fill_bytes, machine_);
   const int line_shift =
       std::countr_zero(static_cast<unsigned>(machine_.texture.line_bytes) / kTexelBlockBytes);
-  CacheTags color(machine_.blend.cache_lines, machine_.blend.cache_ways);
-  CacheTags texture(machine_.texture.cache_lines, machine_.texture.cache_ways);
-  double count = 0;
-  each_sample(*job.work,
-              [&](std::size_t, std::span<const QuadWork> quads, std::span<const std::uint32_t> blocks) {
-                traffic.texel_blocks += static_cast<double>(blocks.size());
+  each_sample(part, first_triangle,
+              [&](std::uint64_t, std::span<const QuadWork> quads, std::span<const std::uint32_t> blocks) {
+                texel_blocks_ += static_cast<double>(blocks.size());
                 for (const std::uint32_t block : blocks)
-                  traffic.texture += touch(texture, block >> line_shift, fill_bytes, 0, false);
+                  texture_bytes_ += touch(texture_tags_, block >> line_shift, fill_bytes, 0, false);
                 for (const QuadWork& quad : quads) {
-                  if (!is_colored(job, quad)) continue;
-                  ++count;
-                  traffic.color += touch(color, layout_.color.line_of(quad), read_bytes, line_bytes, true);
+                  if (!is_colored(*job_, quad)) continue;
+                  ++color_.quads;
+                  color_.bytes +=
+                      touch(color_tags_, layout_.color.line_of(quad), read_bytes, line_bytes, true);
                 }
               });
-  for (double* of_all : {&traffic.color, &traffic.texture, &traffic.texel_blocks})
-    *of_all /= std::max(1.0, count);
+}
+
+Traffic TrafficCounter::traffic() const {
+  const double colored = std::max(1.0, color_.quads);
+  return {.depth = depth_.bytes / std::max(1.0, depth_.quads),
+          .color = color_.bytes / colored,
+          .texture = texture_bytes_ / colored,
+          .texel_blocks = texel_blocks_ / colored};
 }
 
 }  // namespace splatscope::sim

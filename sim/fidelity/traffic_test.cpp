@@ -9,6 +9,13 @@
 namespace splatscope::sim {
 namespace {
 
+Traffic traffic_of(TrafficCounter& counter, const DrawJob& job, const DrawWork& work) {
+  counter.begin(job);
+  counter.add_depth(work, 0);
+  counter.add_color(work, 0);
+  return counter.traffic();
+}
+
 // Bytes of depth that four quads of one triangle move, each in a line of its own.
 double depth_bytes(bool fast_clear, bool clears, std::vector<ClearTile> clear_tiles) {
   testing::RandomTrace made = testing::simple_trace(1);
@@ -23,7 +30,7 @@ double depth_bytes(bool fast_clear, bool clears, std::vector<ClearTile> clear_ti
   const PreparedDraws draws = prepare_draws(made.trace, made.work, machine, layout);
   TrafficCounter counter(machine, layout);
   if (clears) counter.clear();
-  return 4 * counter.of(draws.jobs[0]).depth;
+  return 4 * traffic_of(counter, draws.jobs[0], work).depth;
 }
 
 TEST(Traffic, ClearLinesOfDepthAreNotRead) {
@@ -57,7 +64,8 @@ Traffic color_traffic(const std::function<void(Draw&)>& change, int burst_bytes 
   machine.memory.burst_bytes = burst_bytes;
   const MemoryLayout layout = lay_out(made.trace, machine);
   const PreparedDraws draws = prepare_draws(made.trace, made.work, machine, layout);
-  return TrafficCounter(machine, layout).of(draws.jobs[0]);
+  TrafficCounter counter(machine, layout);
+  return traffic_of(counter, draws.jobs[0], made.work[0]);
 }
 
 TEST(Traffic, ColourIsWrittenBackAndReadToBlend) {
@@ -101,7 +109,7 @@ TEST(Traffic, ATileIsClearForItsTriangleAlone) {
   const PreparedDraws draws = prepare_draws(made.trace, made.work, machine, layout);
   TrafficCounter counter(machine, layout);
   counter.clear();
-  EXPECT_EQ(8 * counter.of(draws.jobs[0]).depth, 7 * 64);
+  EXPECT_EQ(8 * traffic_of(counter, draws.jobs[0], work).depth, 7 * 64);
 }
 
 }  // namespace

@@ -2,19 +2,60 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "model/command/commands.h"
 #include "model/work/work.h"
 
 namespace splatscope::sim {
 
-// A place in a draw at which some of it was left out: of a sampled draw (`../fidelity/sampled.h`).
+// A place in a draw at which some of it was left out: of a sampled draw (`../fidelity/sampled.h`). Several
+// can be at one place, in order.
 struct Cut {
-  std::uint32_t vertex = 0, quad = 0;       // the first ones after it
-  std::span<const std::uint32_t> vertices;  // that were left out, of `DrawWork::shaded_vertices`
-  std::span<const QuadWork> quads;          // that were left out
-  std::span<const std::uint32_t> blocks;    // texel blocks of these
+  std::uint32_t vertex = 0, quad = 0;   // the first ones after it
+  std::vector<std::uint32_t> vertices;  // that were left out, of `DrawWork::shaded_vertices`
+  std::vector<QuadWork> quads;          // that were left out
+  std::vector<std::uint32_t> blocks;    // texel blocks of these
+};
+
+// Those of a draw, by their numbers, without those that all units have passed.
+class Cuts {
+ public:
+  void clear() {
+    forget(end_);
+    begin_ = end_ = 0;
+  }
+  // A new one, of nothing, in memory of one that was forgotten.
+  Cut& add(std::uint32_t vertex, std::uint32_t quad) {
+    Cut& cut = held_.emplace_back();
+    if (!forgotten_.empty()) {
+      cut = std::move(forgotten_.back());
+      forgotten_.pop_back();
+    }
+    cut.vertex = vertex;
+    cut.quad = quad;
+    ++end_;
+    return cut;
+  }
+  void forget(std::uint64_t begin) {
+    for (; begin_ < begin; ++begin_) {
+      Cut& cut = forgotten_.emplace_back(std::move(held_.front()));
+      cut.vertices.clear();
+      cut.quads.clear();
+      cut.blocks.clear();
+      held_.pop_front();
+    }
+  }
+  std::uint64_t end() const { return end_; }
+  const Cut& operator[](std::uint64_t number) const { return held_[number - begin_]; }
+
+ private:
+  std::deque<Cut> held_;
+  std::uint64_t begin_ = 0, end_ = 0;
+  std::vector<Cut> forgotten_;
 };
 
 // Records of a draw, by their numbers in it: all of them one behind the other, or the last ones in a ring.
@@ -62,7 +103,6 @@ class MoreWork {
 // A draw as the units take it: its work, and what is the same for all of it.
 struct DrawJob {
   const Draw* draw = nullptr;
-  const DrawWork* work = nullptr;    // null before the draw begins, and where it comes in parts
   std::uint32_t command = 0;         // its place in the trace
   bool textured = false;             // its quads go through the texture unit
   std::size_t vertex_program = 0;    // which of the programs of the vertex units
@@ -71,7 +111,7 @@ struct DrawJob {
   std::uint32_t index_address = 0;   // of the first index
   std::uint32_t texture_address = 0;
   std::uint64_t triangles_clipped = 0;   // into several pieces, of the whole draw also where it is sampled
-  std::span<const Cut> cuts;             // in order
+  const Cuts* cuts = nullptr;            // null: nothing of it is left out
   std::span<const std::uint32_t> marks;  // triangles, in order, at which primitive assembly tells the time
 
   // What there is of the work so far. All of it, but where it comes in parts: then what some unit has passed

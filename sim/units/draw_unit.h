@@ -59,6 +59,9 @@ class DrawUnit : public Unit {
   virtual std::uint64_t items(const DrawJob& job) const = 0;
   // False: none, whatever comes.
   virtual bool takes_part(const DrawJob&) const { return true; }
+  // How many cuts of a draw it will not look at again.
+  static constexpr std::uint64_t kNoMoreCuts = ~std::uint64_t{0};
+  virtual std::uint64_t cuts_passed(const DrawJob&) const { return kNoMoreCuts; }
   std::uint64_t items_done(const DrawJob& job) const { return job_ == &job ? known_ - remaining_ : 0; }
 
  protected:
@@ -77,9 +80,15 @@ class DrawUnit : public Unit {
   // which of the items a cut is told by.
   template <typename Pass>
   void pass_cuts(std::uint32_t Cut::*first_after, std::size_t number, Pass pass) {
-    const std::span<const Cut> cuts = job_->cuts;
-    for (; next_cut_ < cuts.size() && cuts[next_cut_].*first_after <= number; ++next_cut_)
-      pass(cuts[next_cut_]);
+    const Cuts* cuts = job_->cuts;
+    if (cuts == nullptr) return;
+    for (; next_cut_ < cuts->end() && (*cuts)[next_cut_].*first_after <= number; ++next_cut_)
+      pass((*cuts)[next_cut_]);
+  }
+  // cuts_passed() of a unit that calls pass_cuts().
+  std::uint64_t cuts_passed_by_tags(const DrawJob& job) const {
+    if (!takes_part(job)) return kNoMoreCuts;
+    return job_ == &job ? next_cut_ : 0;
   }
   Step nothing_to_take(Cycle next) const { return has_work() ? starved(next) : idle(next); }
   Completion& completion() { return completion_; }
@@ -101,7 +110,7 @@ class DrawUnit : public Unit {
   const DrawJob* job_ = nullptr;
   std::uint64_t known_ = 0;      // items of what there was of the draw when it was last looked at
   std::uint64_t remaining_ = 0;  // of these
-  std::size_t next_cut_ = 0;     // of the draw
+  std::uint64_t next_cut_ = 0;   // of the draw
 };
 
 }  // namespace splatscope::sim

@@ -67,8 +67,9 @@ TEST(BlendUnit, WhatWasLeftOutPassesThroughTheTags) {
   draw.add_quad(20, 0);
   for (const int x : {2, 4, 6, 10}) left_out.add_quad(x, 0);
   left_out.add_quad(30, 0, {}, 0);
-  const Cut cuts[] = {{0, 1, {}, left_out.work.quads, {}}};
-  draw.job.cuts = cuts;
+  Cuts cuts;
+  cuts.add(0, 1).quads = left_out.work.quads;
+  draw.job.cuts = &cuts;
   source.connect(in);
   blend.connect(in, memory.port, 0);
   bench.begin(draw.prepare(), {&blend});

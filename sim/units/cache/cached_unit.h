@@ -11,6 +11,7 @@ namespace splatscope::sim {
 class CachedUnit : public DrawUnit {
  public:
   std::string state() const override;
+  std::uint64_t cuts_passed(const DrawJob& job) const final { return cuts_passed_by_tags(job); }
 
  protected:
   CachedUnit(std::string name, Completion& completion, const CachePipe::Spec& cache, int quads_per_clock)

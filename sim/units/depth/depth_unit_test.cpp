@@ -58,8 +58,9 @@ TEST(DepthUnit, WhatWasLeftOutPassesThroughTheTags) {
   left_out.add_quad(64, 0);
   for (int i = 0; i < 4; ++i) left_out.add_quad(128, 8 * i);  // the ways of its set
   left_out.add_quad(0, 0);
-  const Cut cuts[] = {{0, 1, {}, left_out.work.quads, {}}};
-  draw.job.cuts = cuts;
+  Cuts cuts;
+  cuts.add(0, 1).quads = left_out.work.quads;
+  draw.job.cuts = &cuts;
   const DepthBench run(draw, {4, 4, 8, 4, 8, true}, true);
   EXPECT_EQ(run.traffic(), (std::vector<std::pair<std::uint32_t, bool>>{{4 * 128 + 64, true}, {32, false}}));
 }
@@ -71,8 +72,9 @@ TEST(DepthUnit, AllThatWasLeftOutPassesThroughTheTags) {
   draw.add_quad(64, 0);
   left_out.add_quad(64, 0);
   for (int i = 0; i < 20000; ++i) left_out.add_quad(0, 0);
-  const Cut cuts[] = {{0, 1, {}, left_out.work.quads, {}}};
-  draw.job.cuts = cuts;
+  Cuts cuts;
+  cuts.add(0, 1).quads = left_out.work.quads;
+  draw.job.cuts = &cuts;
   const DepthBench run(draw, {4, 4, 8, 4, 8, true}, true);
   EXPECT_TRUE(run.traffic().empty());
 }

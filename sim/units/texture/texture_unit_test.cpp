@@ -46,8 +46,9 @@ TEST(TextureUnit, WhatWasLeftOutPassesThroughTheTags) {
   draw.add_quad(0, 0, {6});
   draw.add_quad(0, 0, {7});
   left_out.add_quad(0, 0, {4, 6});
-  const Cut cuts[] = {{0, 1, {}, left_out.work.quads, left_out.work.texel_blocks}};
-  draw.job.cuts = cuts;
+  Cuts cuts;
+  cuts.add(0, 1).blocks = left_out.work.texel_blocks;
+  draw.job.cuts = &cuts;
   const TextureBench run(draw, small_cache(), 40);
   ASSERT_EQ(run.memory.memory.requests().size(), 2u);  // of 5 and 7
   EXPECT_EQ(run.memory.memory.requests()[1].second.address, 7u * 16);

@@ -31,6 +31,7 @@ class VertexFetch final : public DrawUnit {
   std::uint64_t items(const DrawJob& job) const override {
     return job.all_triangles == 0 ? 0 : job.counts.triangles + (job.is_complete() ? 1 : 0);
   }
+  std::uint64_t cuts_passed(const DrawJob& job) const override { return cuts_passed_by_tags(job); }
   std::vector<Statistic> statistics(Cycle) const override;
   std::string state() const override;
 

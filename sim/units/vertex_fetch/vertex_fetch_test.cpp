@@ -89,9 +89,9 @@ TEST(VertexFetch, MayTakeAllIndicesOfATriangleInAClock) {
 // What a sampled draw left out before vertex 4 has brought the line of vertices 4 and 5, and taken nothing.
 TEST(VertexFetch, WhatWasLeftOutPassesThroughTheTags) {
   testing::TestDraw draw = two_quads();
-  const std::vector<std::uint32_t> left_out = {4, 5};
-  const Cut cuts[] = {{4, 0, left_out, {}, {}}};
-  draw.job.cuts = cuts;
+  Cuts cuts;
+  cuts.add(4, 0).vertices = {4, 5};
+  draw.job.cuts = &cuts;
   const FetchBench run(draw, {}, 0);
   ASSERT_EQ(run.vertices.memory.requests().size(), 3u);
   EXPECT_EQ(run.vertices.memory.requests()[2].second.address, 0x10000u + 3 * 64);

@@ -1,16 +1,16 @@
-#include "sim/work_parts.h"
+#include "sim/work_window.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <numeric>
-#include <random>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "model/error.h"
+#include "sim/testing/cutter.h"
 #include "sim/testing/random_trace.h"
 #include "sim/testing/same_books.h"
 
@@ -49,7 +49,15 @@ class Idle final : public DrawUnit {
   Step advance(Cycle) override { return idle(); }
   std::uint64_t items(const DrawJob& job) const override { return job.counts.triangles_set_up; }
   bool takes_part(const DrawJob& job) const override { return !job.draw->state.blend; }
+  std::uint64_t cuts_passed(const DrawJob& job) const override { return cuts_passed_by_tags(job); }
   void do_one() { item_done(0); }
+  // What was left out before a vertex.
+  std::vector<std::uint32_t> pass(std::uint32_t vertex) {
+    std::vector<std::uint32_t> passed;
+    pass_cuts(&Cut::vertex, vertex,
+              [&](const Cut& cut) { passed.insert(passed.end(), cut.vertices.begin(), cut.vertices.end()); });
+    return passed;
+  }
 };
 
 class WorkPartsTest : public ::testing::Test {
@@ -122,6 +130,25 @@ TEST_F(WorkPartsTest, AUnitThatTakesNoPartInADrawAsksForNothing) {
   EXPECT_EQ(asked_, 4) << "there could be one in any of the four parts";
 }
 
+// Each is met once, and its memory taken for another one when it was.
+TEST_F(WorkPartsTest, CutsAreKeptUntilTheyArePassed) {
+  WorkWindow window(units_);
+  window.begin(job_, 4, parts_);
+  window.leave_out().vertices = {1, 2};
+  window.leave_out().vertices = {3};
+  window.add(last_part());
+  unit_.begin(job_);
+  window.leave_out().vertices = {4};
+  EXPECT_EQ(job_.cuts->end(), 3u);
+  EXPECT_EQ((*job_.cuts)[2].vertex, 1u);
+  EXPECT_EQ(unit_.pass(0), (std::vector<std::uint32_t>{1, 2, 3}));
+  EXPECT_EQ(unit_.pass(0), (std::vector<std::uint32_t>{}));
+  window.add(last_part());
+  EXPECT_TRUE(window.leave_out().vertices.empty());
+  EXPECT_EQ(job_.cuts->end(), 4u);
+  EXPECT_EQ(unit_.pass(1), (std::vector<std::uint32_t>{4}));
+}
+
 TEST_F(WorkPartsTest, WhatDoesNotFitTheDrawIsAModelError) {
   const auto refused = [&](auto&& spoil) {
     const DrawWork right = part_;
@@ -147,45 +174,6 @@ TEST_F(WorkPartsTest, WhatDoesNotFitTheDrawIsAModelError) {
   });
 }
 
-// Cuts the work of draws into parts of up to `most` triangles, each in the place of the one before.
-class Cutter {
- public:
-  Cutter(std::span<const DrawWork> draws, std::size_t most, unsigned seed)
-      : draws_(draws), count_(1, most), random_(seed) {}
-
-  const DrawWork& next() {
-    const DrawWork& draw = draws_[draw_];
-    part_ = {};
-    part_.command = draw.command;
-    for (std::size_t left = count_(random_); left != 0 && triangle_ != draw.triangles.size(); --left) {
-      const TriangleWork& triangle = draw.triangles[triangle_++];
-      part_.triangles.push_back(triangle);
-      move(draw.shaded_vertices, vertex_, triangle.new_vertices, part_.shaded_vertices);
-      for (std::size_t quad = quad_; quad != quad_ + triangle.quad_count; ++quad)
-        move(draw.texel_blocks, block_, draw.quads[quad].texel_block_count, part_.texel_blocks);
-      move(draw.quads, quad_, triangle.quad_count, part_.quads);
-    }
-    if (triangle_ == draw.triangles.size()) {
-      ++draw_;
-      triangle_ = vertex_ = quad_ = block_ = 0;
-    }
-    return part_;
-  }
-  bool is_at_the_end() const { return draw_ == draws_.size(); }
-
- private:
-  template <class T>
-  static void move(const std::vector<T>& from, std::size_t& at, std::size_t count, std::vector<T>& to) {
-    for (; count != 0; --count) to.push_back(from[at++]);
-  }
-
-  std::span<const DrawWork> draws_;
-  std::uniform_int_distribution<std::size_t> count_;
-  std::mt19937 random_;
-  std::size_t draw_ = 0, triangle_ = 0, vertex_ = 0, quad_ = 0, block_ = 0;
-  DrawWork part_;
-};
-
 class PartsOfRandomTraces : public ::testing::TestWithParam<unsigned> {};
 
 // Work that comes while the simulation runs, in parts of any size.
@@ -196,7 +184,7 @@ TEST_P(PartsOfRandomTraces, GiveWhatAllOfItGives) {
   const Machine machine = maker.machine();
   const Result at_once = simulate(made.trace, made.work, machine);
   for (const std::size_t most : {1, 7, 1000}) {
-    Cutter cutter(made.work, most, GetParam());
+    testing::Cutter cutter(made.work, most, GetParam());
     const Result beside = simulate_beside(
         made.trace, [&]() -> const DrawWork& { return cutter.next(); }, machine);
     EXPECT_TRUE(cutter.is_at_the_end());

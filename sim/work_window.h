@@ -29,19 +29,21 @@ class RecordRing {
   std::uint64_t begin_ = 0, end_ = 0;
 };
 
-// The work of draws that comes in parts while they are timed. What is held lies between the first unit of the
+// The work of a draw that comes in parts while it is timed. What is held lies between the first unit of the
 // pipeline and the last one, or the next item of a unit that has none before it: of a stretch that is hidden,
 // all.
-class WorkParts final : public MoreWork {
+class WorkWindow {
  public:
   // `units`: that count a draw's items by its records, and look at them until an item is done. They outlive
   // it.
-  WorkParts(const PartSource& next, std::span<const DrawUnit* const> units) : next_(next), units_(units) {}
+  explicit WorkWindow(std::span<const DrawUnit* const> units) : units_(units) {}
 
-  // Gives the job its first part, when all of the draw before has been done. ModelError where a part is of
-  // another command, or does not add up.
-  void begin(DrawJob& job);
-  void take() override;
+  // Empty, of the next draw, when all of the one before has been done. `triangles`: that are to be timed.
+  void begin(DrawJob& job, std::uint64_t triangles, MoreWork& rest);
+  // What comes next in the draw, as expect_part() has it.
+  void add(const DrawWork& part);
+  // What comes next is left out: a place for it.
+  Cut& leave_out();
 
  private:
   // What a draw held at the end of a part.
@@ -51,7 +53,6 @@ class WorkParts final : public MoreWork {
   };
   void forget();
 
-  const PartSource& next_;
   std::span<const DrawUnit* const> units_;
   DrawJob* job_ = nullptr;
   std::deque<Ends> parts_;  // that some unit may look at
@@ -59,6 +60,26 @@ class WorkParts final : public MoreWork {
   RecordRing<std::uint32_t> shaded_vertices_;
   RecordRing<QuadWork> quads_;
   RecordRing<std::uint32_t> texel_blocks_;
+  Cuts cuts_;
+};
+
+// ModelError where a part is not one of this draw's work, of which so many triangles came before, or does not
+// add up.
+void expect_part(const DrawJob& job, const DrawWork& part, std::uint64_t triangles_before);
+
+// All of a draw's work, one part after the other.
+class WorkParts final : public MoreWork {
+ public:
+  WorkParts(const PartSource& next, std::span<const DrawUnit* const> units) : next_(next), window_(units) {}
+
+  // Gives the job its first part, when all of the draw before has been done. ModelError: as expect_part().
+  void begin(DrawJob& job);
+  void take() override;
+
+ private:
+  const PartSource& next_;
+  DrawJob* job_ = nullptr;
+  WorkWindow window_;
 };
 
 }  // namespace splatscope::sim
