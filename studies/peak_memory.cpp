@@ -8,6 +8,10 @@
 namespace splatscope::studies {
 
 bool restart_peak_memory() {
+  // What a thread frees at the end of its own heap stays there (glibc), and ever larger pieces do as some are
+  // freed, unless they are mapped for themselves: so then would the memory of one run be missing in the next.
+  constexpr int kMapped = 128 * 1024;
+  mallopt(M_MMAP_THRESHOLD, kMapped);
   malloc_trim(0);
   std::ofstream file("/proc/self/clear_refs");
   file << 5;  // proc(5): reset the peak resident set size
