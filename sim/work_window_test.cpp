@@ -147,6 +147,23 @@ TEST_F(WorkPartsTest, CutsAreKeptUntilTheyArePassed) {
   EXPECT_TRUE(window.leave_out().vertices.empty());
   EXPECT_EQ(job_.cuts->end(), 4u);
   EXPECT_EQ(unit_.pass(1), (std::vector<std::uint32_t>{4}));
+
+  DrawJob next = job_;
+  next.counts = {};
+  window.begin(next, 4, parts_);
+  window.leave_out().vertices = {5};
+  window.add(last_part());  // what the unit has passed of the draw before says nothing
+  unit_.begin(next);
+  EXPECT_EQ(unit_.pass(0), (std::vector<std::uint32_t>{5}));
+}
+
+TEST_F(WorkPartsTest, NoCutIsKeptForAUnitThatTakesNoPart) {
+  draw_.state.blend = true;
+  WorkWindow window(units_);
+  window.begin(job_, 4, parts_);
+  window.leave_out().vertices = {1, 2};
+  window.add(last_part());
+  EXPECT_GE(window.leave_out().vertices.capacity(), 2u) << "in its memory";
 }
 
 TEST_F(WorkPartsTest, WhatDoesNotFitTheDrawIsAModelError) {

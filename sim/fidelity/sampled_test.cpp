@@ -235,7 +235,8 @@ TEST(Sampled, SmallTracesAreSimulatedWhole) {
 
 // In parts, each in the place of the one before it, also of frames that are sampled.
 TEST(Sampled, WorkThatComesAsItIsNeededGivesTheSame) {
-  const RandomTrace made = frames_of_two_draws({{kTriangles, 1}, {kTriangles, 4}}, 500);
+  RandomTrace made = frames_of_two_draws({{kTriangles, 1}, {kTriangles, 4}}, 500);
+  for (DrawWork& work : made.work) work.sampled_runs_apart = 4;
   const Machine machine = machine::load(machine::kGeForce4);
   const Result at_once = estimate_sampled(made.trace, made.work, machine, 3);
   EXPECT_GT(at_once.cycles_plus_minus, 0);
