@@ -161,7 +161,7 @@ FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity
 // How much of a frame's work waits for its time: the more, the less the two wait for one another where one
 // part takes longer than the next; of a small frame little, as its memory would be that of what waits.
 std::size_t parts_ahead(const Trace& trace) {
-  constexpr std::size_t kLeast = 4, kMost = 64, kTriangles = 10000;
+  constexpr std::size_t kLeast = 4, kMost = 256, kTriangles = 10000;
   std::size_t triangles = 0;
   for (const Command& command : trace.commands)
     if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
