@@ -23,7 +23,8 @@ struct BatchTriangle {
 // What passes from stage to stage; what a stage works in is its thread's (Geometry).
 class GeometryBatch {
  public:
-  static constexpr std::size_t kVertices = 640, kTriangles = 1600;  // at most
+  // At most: with fewer vertices threads wait for one another more, with more a batch only takes more memory.
+  static constexpr std::size_t kVertices = 640, kTriangles = 1600;
 
   // From now on it takes triangles of this draw, until it is bound to the next.
   void bind(const DrawBindings& bindings) { bindings_ = &bindings; }
