@@ -93,15 +93,19 @@ void Geometry::process(GeometryBatch& batch) {
   shade();
   for (std::size_t first = 0; first < batch.triangles.size(); first += raster::Corners::kCapacity) {
     const std::size_t count = std::min(batch.triangles.size() - first, raster::Corners::kCapacity);
-    // Of quads, triangles 2n and 2n + 1 are of vertices 4n to 4n + 3.
-    const auto outside = std::span(projected_.outside).subspan(2 * first, batch.only_quads ? 2 * count : 0);
-    if (batch.only_quads && std::reduce(outside.begin(), outside.end(), 0, std::bit_or{}) == 0) {
+    if (batch.only_quads && are_all_inside(first, count)) {
       set_up_quads(first, count);
     } else {
       for (BatchTriangle& triangle : std::span(batch.triangles).subspan(first, count)) assemble(triangle);
       set_up();
     }
   }
+}
+
+// The vertices of some triangles of quads, of which 2n and 2n + 1 are of vertices 4n to 4n + 3.
+bool Geometry::are_all_inside(std::size_t first, std::size_t count) const {
+  const auto outside = std::span(projected_.outside).subspan(2 * first, 2 * count);
+  return std::reduce(outside.begin(), outside.end(), 0, std::bit_or{}) == 0;
 }
 
 void Geometry::shade() {

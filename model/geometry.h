@@ -78,6 +78,7 @@ class Geometry {
 
  private:
   void shade();
+  bool are_all_inside(std::size_t first, std::size_t count) const;
   void set_up_quads(std::size_t first, std::size_t count);
   void assemble(BatchTriangle& triangle);
   void assemble_slowly(BatchTriangle& triangle);

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "model/geometry.h"
 #include "model/testing/draws.h"
 #include "model/testing/random_seed.h"
 #include "model/testing/simd_targets.h"
@@ -140,7 +141,8 @@ TEST(Render, ShadesWhatMissesTheVertexCache) {
 // several: it takes many of them at once.
 TEST(Render, ShadesWhatMissesTheVertexCacheInRunsOfQuads) {
   std::mt19937 random(random_seed());
-  for (const std::uint32_t first_run : {1u, 100u, 255u, 256u, 257u, 600u}) {
+  constexpr std::uint32_t kBatch = GeometryBatch::kVertices / 4;  // quads
+  for (const std::uint32_t first_run : {1u, 100u, kBatch - 1, kBatch, kBatch + 1, 600u}) {
     std::vector<std::uint16_t> indices;
     for (std::uint32_t first = 40, quad = 1; quad < 3000; ++quad) {
       for (const std::uint16_t corner : kQuad) indices.push_back(static_cast<std::uint16_t>(first + corner));

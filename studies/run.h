@@ -108,8 +108,8 @@ std::string text_of_cycles(std::size_t frames, std::uint64_t cycles, double plus
 std::string text_of_rate(const Rate& rate);
 std::string text_of_bottleneck(const Rate& rate);
 
-// Where events are simulated (sampled, cycle, referee), the function of the next draws runs in a thread
-// beside the time of this one, and calls `on_frame`. The records of work are dropped once they are simulated.
+// Where events are simulated (sampled, cycle, referee), the function of what comes next runs in a thread
+// beside the time of this, and calls `on_frame`. The records of work are dropped once they are simulated.
 FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity,
                    const Progress& progress = {}, const OnFrame& on_frame = {},
                    const TimingOptions& timing = {});
