@@ -158,10 +158,12 @@ FrameRun run_after(const Trace& trace, const Machine& machine, Fidelity fidelity
   return run;
 }
 
-// How much of a frame's work waits for its time: the more, the less the two wait for one another where one
-// part takes longer than the next; of a small frame little, as its memory would be that of what waits.
-std::size_t parts_ahead(const Trace& trace) {
+// How much of a frame's work waits for its time. Samples take long and what lies between them passes quickly:
+// the more waits, the less the two wait for one another; of a small frame little, as its memory would be that
+// of what waits.
+std::size_t parts_ahead(const Trace& trace, Fidelity fidelity) {
   constexpr std::size_t kLeast = 4, kMost = 256, kTriangles = 10000;
+  if (fidelity != Fidelity::sampled) return kLeast;
   std::size_t triangles = 0;
   for (const Command& command : trace.commands)
     if (const Draw* draw = std::get_if<Draw>(&command)) triangles += draw->index_count / 3;
@@ -173,7 +175,7 @@ std::size_t parts_ahead(const Trace& trace) {
 FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelity,
                     const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
                     const TimingOptions& timing) {
-  WorkQueue queue(parts_ahead(trace));
+  WorkQueue queue(parts_ahead(trace, fidelity));
   std::future<Rendered> function = std::async(std::launch::async, [&] {
     try {
       const auto put = [&](DrawWork& work) {
