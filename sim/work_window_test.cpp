@@ -157,6 +157,17 @@ TEST_F(WorkPartsTest, CutsAreKeptUntilTheyArePassed) {
   EXPECT_EQ(unit_.pass(0), (std::vector<std::uint32_t>{5}));
 }
 
+// Met by a unit that cuts_passed() does not speak of.
+TEST_F(WorkPartsTest, ACutThatIsForgottenTooEarlyIsAModelError) {
+  WorkWindow window({});
+  window.begin(job_, 4, parts_);
+  window.leave_out().vertices = {1};
+  window.add(last_part());
+  window.add(last_part());
+  unit_.begin(job_);
+  EXPECT_THROW(unit_.pass(0), ModelError);
+}
+
 TEST_F(WorkPartsTest, NoCutIsKeptForAUnitThatTakesNoPart) {
   draw_.state.blend = true;
   WorkWindow window(units_);

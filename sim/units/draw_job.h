@@ -49,6 +49,7 @@ class Cuts {
       held_.pop_front();
     }
   }
+  std::uint64_t begin() const { return begin_; }
   std::uint64_t end() const { return end_; }
   const Cut& operator[](std::uint64_t number) const { return held_[number - begin_]; }
 

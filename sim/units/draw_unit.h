@@ -82,8 +82,12 @@ class DrawUnit : public Unit {
   void pass_cuts(std::uint32_t Cut::*first_after, std::size_t number, Pass pass) {
     const Cuts* cuts = job_->cuts;
     if (cuts == nullptr) return;
-    for (; next_cut_ < cuts->end() && (*cuts)[next_cut_].*first_after <= number; ++next_cut_)
+    for (; next_cut_ < cuts->end(); ++next_cut_) {
+      if (next_cut_ < cuts->begin())
+        throw ModelError(name() + " meets cuts, and does not say so (cuts_passed)");
+      if ((*cuts)[next_cut_].*first_after > number) return;
       pass((*cuts)[next_cut_]);
+    }
   }
   // cuts_passed() of a unit that calls pass_cuts().
   std::uint64_t cuts_passed_by_tags(const DrawJob& job) const {
