@@ -217,11 +217,7 @@ TEST_P(PartsOfRandomTraces, GiveWhatAllOfItGives) {
         made.trace, [&]() -> const DrawWork& { return cutter.next(); }, machine);
     EXPECT_TRUE(cutter.is_at_the_end());
     EXPECT_EQ(beside.event_hash, at_once.event_hash);
-    EXPECT_EQ(beside.cycles, at_once.cycles);
-    EXPECT_EQ(beside.command_ends, at_once.command_ends);
-    ASSERT_EQ(beside.units.size(), at_once.units.size());
-    for (std::size_t i = 0; i < beside.units.size(); ++i)
-      testing::expect_same_books(beside.units[i], at_once.units[i]);
+    testing::expect_same_times(beside, at_once);
   }
 }
 

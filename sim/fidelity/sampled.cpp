@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 #include <tuple>
+#include <utility>
 
 #include "model/error.h"
 #include "sim/fidelity/stretches.h"
@@ -244,12 +245,12 @@ class Sampler {
         books.push_back(domain->closed_books(place, now));
     }
     if (notes_.size() > intervals_.size()) throw_marks_differ();
-    if (!notes_.empty()) add_books(intervals_[notes_.size() - 1], books);
+    if (!notes_.empty()) sum_books(intervals_[notes_.size() - 1], books);
     books_ = std::move(books);
     notes_.push_back(now);
   }
 
-  void add_books(const Interval& interval, std::span<const Books> books) {
+  void sum_books(const Interval& interval, std::span<const Books> books) {
     if (interval.role == Role::warming) return;
     std::vector<Books>& sum =
         interval.role == Role::exact ? exact_books_ : interval.population->sampled_books;
@@ -296,6 +297,9 @@ class Sampler {
 
   // Rounded so that they still add up.
   void add_books(Result& result) const {
+    std::vector<std::pair<double, const std::vector<Books>*>> weighed{{1, &exact_books_}};
+    for (const auto& [state, population] : populations_)
+      if (population.is_sampled()) weighed.emplace_back(population.weight(), &population.sampled_books);
     std::size_t number = 0;
     for (const ClockDomain* domain : {&machine_->core, &machine_->bus}) {
       for (const Unit* unit : domain->units()) {
@@ -303,11 +307,8 @@ class Sampler {
         double sum = 0;
         Cycle rounded = 0;
         for (std::size_t cause = 0; cause < books.cycles.size(); ++cause) {
-          sum += static_cast<double>(exact_books_[number].cycles[cause]);
-          for (const auto& [state, population] : populations_)
-            if (population.is_sampled())
-              sum +=
-                  population.weight() * static_cast<double>(population.sampled_books[number].cycles[cause]);
+          for (const auto& [weight, of_units] : weighed)
+            sum += weight * static_cast<double>((*of_units)[number].cycles[cause]);
           books.cycles[cause] = static_cast<Cycle>(std::llround(sum)) - rounded;
           rounded += books.cycles[cause];
         }
