@@ -52,17 +52,16 @@ std::vector<DrawWork> work_of(const Trace& trace, const Machine& machine) {
   return render(trace, render_options(machine)).work;
 }
 
-// What other samples say of each frame of a trace; one that is simulated whole is the same by every seed.
+// What other samples say of each frame of a trace: of one that is simulated whole once.
 void add_seeds(const Trace& trace, const Machine& machine, std::vector<FidelityRow>& rows) {
   const std::vector<DrawWork> work = work_of(trace, machine);
-  const auto is_whole = [](const FidelityRow& row) { return row.cycles_plus_minus == 0; };
-  const std::uint64_t runs = std::ranges::all_of(rows, is_whole) ? 1 : kSampleSeeds;
-  for (std::uint64_t seed = 0; seed < runs; ++seed) {
+  for (std::uint64_t seed = 0; seed < kSampleSeeds; ++seed) {
     const sim::Result result =
         time_frame(trace, work, machine, Fidelity::sampled, {.seed = seed, .heat_maps = nullptr});
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (seed == 0 || !is_whole(rows[i]))
-        rows[i].seeds.push_back({static_cast<double>(result.frame_cycles[i]), plus_minus_of(result, i)});
+      const double plus_minus = plus_minus_of(result, i);
+      if (seed == 0 || plus_minus > 0)
+        rows[i].seeds.push_back({static_cast<double>(result.frame_cycles[i]), plus_minus});
     }
   }
 }

@@ -31,8 +31,8 @@ struct FidelityRow {
     double error = 0;
     bool covers() const;  // whether the referee's cycles are in the interval
   };
-  // Of fidelity sampled: by --seed 0, 1, ..., kSampleSeeds - 1; of 0 alone where the frame was simulated
-  // whole.
+  // Of fidelity sampled: by --seed 0, 1, ..., kSampleSeeds - 1, without those but 0 by which the frame was
+  // simulated whole.
   std::vector<Seed> seeds;
 };
 // From the fastest to the one that the others are measured by.

@@ -252,7 +252,7 @@ void add_fidelity_report(Findings& findings, std::span<const FidelityGroup> grou
       "resolutions), of the figures that draw other scenes and of progressive rendering, on both machines. "
       "Host seconds hold function and timing, and are the least of {} runs "
       "(the referee's: of one). Errors are against the referee; those of sampled are of all seeds from 0 to "
-      "{}, of 0 alone where a frame is too small to be sampled. Memory is that of the whole process, the "
+      "{}, of 0 alone where all of a frame is simulated. Memory is that of the whole process, the "
       "trace included.",
       kFidelityRepetitions, kSampleSeeds - 1));
   for (const FidelityGroup& group : groups)

@@ -170,16 +170,16 @@ std::size_t parts_ahead(const Trace& trace, Fidelity fidelity) {
   return std::clamp(triangles / kTriangles, kLeast, kMost);
 }
 
-// The function of what comes next beside the time of this. One thread is fast enough for it, and holds one
-// batch.
-FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelity,
-                    const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
-                    const TimingOptions& timing) {
+// The function of what comes next beside the time of this, which `time` takes from the source of the parts.
+// One thread is fast enough for the function, and holds one batch.
+template <typename Time>
+Rendered render_beside(const Trace& trace, Fidelity fidelity, const RenderOptions& options,
+                       const OnFrame& on_frame, HeatMaps* heat_maps, Time time) {
   WorkQueue queue(parts_ahead(trace, fidelity));
   std::future<Rendered> function = std::async(std::launch::async, [&] {
     try {
       const auto put = [&](DrawWork& work) {
-        if (timing.heat_maps) timing.heat_maps->add(work);
+        if (heat_maps) heat_maps->add(work);
         queue.put(work);
       };
       return tbb::task_arena(1).execute([&] { return render_in_parts(trace, options, {}, on_frame, put); });
@@ -192,12 +192,31 @@ FrameRun run_beside(const Trace& trace, const Machine& machine, Fidelity fidelit
     WorkQueue& queue;
     ~Stop() { queue.stop(); }
   } stop{queue};
-  const auto next = [&]() -> const DrawWork& { return queue.next(); };
-  sim::Result result =
-      fidelity == Fidelity::sampled
-          ? sim::estimate_sampled_beside(trace, next, machine, timing.seed, progress)
-          : sim::simulate_beside(trace, next, machine, scheduler_of(fidelity), progress, timing.observers);
-  return {function.get(), std::move(result), 0, {}, {}};
+  time([&]() -> const DrawWork& { return queue.next(); });
+  return function.get();
+}
+
+FrameRun run_simulated(const Trace& trace, const Machine& machine, Fidelity fidelity,
+                       const RenderOptions& options, const Progress& progress, const OnFrame& on_frame,
+                       const TimingOptions& timing) {
+  sim::Result result;
+  const auto time = [&](const sim::PartSource& next) {
+    result = sim::simulate_beside(trace, next, machine, scheduler_of(fidelity), progress, timing.observers);
+  };
+  Rendered rendered = render_beside(trace, fidelity, options, on_frame, timing.heat_maps, time);
+  return {std::move(rendered), std::move(result), 0, {}, {}};
+}
+
+// Once more where its samples were too few, for the time alone.
+FrameRun run_sampled(const Trace& trace, const Machine& machine, const RenderOptions& options,
+                     const Progress& progress, const OnFrame& on_frame, const TimingOptions& timing) {
+  sim::SampledRun run;
+  const auto time = [&](const sim::PartSource& next) {
+    run = sim::estimate_sampled_beside(trace, next, machine, {timing.seed, run.density}, progress);
+  };
+  Rendered rendered = render_beside(trace, Fidelity::sampled, options, on_frame, timing.heat_maps, time);
+  if (!run.density.empty()) render_beside(trace, Fidelity::sampled, options, {}, nullptr, time);
+  return {std::move(rendered), std::move(run.result), 0, {}, {}};
 }
 
 }  // namespace
@@ -217,7 +236,9 @@ FrameRun run_frame(const Trace& trace, const Machine& machine, Fidelity fidelity
     if (options.record == Record::samples) return run_throughput(trace, machine, options, progress, on_frame);
     if (fidelity == Fidelity::functional || fidelity == Fidelity::throughput)
       return run_after(trace, machine, fidelity, options, progress, on_frame, timing);
-    return run_beside(trace, machine, fidelity, options, progress, on_frame, timing);
+    if (fidelity == Fidelity::sampled)
+      return run_sampled(trace, machine, options, progress, on_frame, timing);
+    return run_simulated(trace, machine, fidelity, options, progress, on_frame, timing);
   };
   FrameRun run = run_it();
   run.host_seconds = seconds_since(start);

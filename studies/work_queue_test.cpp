@@ -10,6 +10,8 @@
 
 #include "model/testing/draws.h"
 #include "model/testing/sanitized.h"
+#include "sim/fidelity/sampled.h"
+#include "studies/heat_maps.h"
 #include "studies/peak_memory.h"
 #include "studies/run.h"
 
@@ -100,6 +102,31 @@ TEST(RunFrame, FunctionBesideTimeIsFunctionThenTime) {
   EXPECT_EQ(sampled.timing->cycles, estimate.cycles);
   EXPECT_EQ(sampled.timing->cycles_plus_minus, estimate.cycles_plus_minus);
   EXPECT_TRUE(sampled.rendered.work.empty());
+}
+
+// Where a few samples say too little, more are taken: of the time, not of the picture.
+TEST(RunFrame, ASecondRunOfSamplesDrawsNothingAgain) {
+  Machine machine = machine::load(machine::kGeForce4);
+  for (const char* setting : {"vertex.units=8", "memory.channels=1"}) machine::set(machine, setting);
+  const Trace trace = plane_of_several_draws(machine);
+  const Rendered rendered = render(trace, render_options(machine));
+  auto next = rendered.work.begin();
+  const auto first = sim::estimate_sampled_beside(
+      trace, [&]() -> const DrawWork& { return *next++; }, machine);
+  ASSERT_FALSE(first.density.empty());
+  HeatMaps once(trace, false), maps(trace, false);
+  for (const DrawWork& work : rendered.work) once.add(work);
+  int frames = 0;
+  const FrameRun run =
+      run_frame(trace, machine, Fidelity::sampled, {}, [&](const Frame&) { ++frames; }, {.heat_maps = &maps});
+  const sim::Result timing = time_frame(trace, rendered.work, machine, Fidelity::sampled);
+  EXPECT_EQ(run.timing->cycles, timing.cycles);
+  EXPECT_EQ(run.timing->cycles_plus_minus, timing.cycles_plus_minus);
+  EXPECT_NE(timing.cycles_plus_minus, first.result.cycles_plus_minus);
+  EXPECT_EQ(frames, 1);
+  ASSERT_EQ(run.heat_maps.size(), once.maps().size());
+  for (std::size_t i = 0; i < run.heat_maps.size(); ++i)
+    EXPECT_EQ(run.heat_maps[i].sum, once.maps()[i].sum) << run.heat_maps[i].name;
 }
 
 // The records of a rectangle, of which a draw may have thousands, are gone when the last unit has seen them.

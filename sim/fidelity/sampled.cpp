@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <tuple>
@@ -14,10 +15,12 @@
 namespace splatscope::sim {
 namespace {
 
-constexpr std::size_t kSamples = 47;  // of a population
-constexpr std::size_t kFewest = 4;    // units to a sample, or all are simulated
-constexpr std::size_t kUnit = 2;      // stretches
-constexpr std::size_t kTail = 2;      // stretches, at least, at the end of a draw
+constexpr double kDistance = 24;  // stretches to a sample
+constexpr double kFewest = 18;    // samples of a population, where one unit explains what they take, and
+constexpr double kMany = 80;      // where none does
+// A population of fewer stretches is simulated whole, and so is one of which half would run for its samples.
+constexpr double kSmallest = 120;
+constexpr std::size_t kTail = 2;  // stretches, at least, at the end of a draw
 // How many times what fills the queues the start of a draw is: where the units before and behind a queue are
 // about as fast, it fills by their difference alone, and so late.
 constexpr std::size_t kFillings = 6;
@@ -36,24 +39,26 @@ std::size_t stretches_to_fill(const Machine& machine) {
   return std::max<std::size_t>(2, (held + kStretch - 1) / kStretch);
 }
 
-// Units of the draws of a frame that have their state in common. Frames are apart: what draws of one take
+// Stretches of the draws of a frame that have their state in common. Frames are apart: what draws of one take
 // says little of another, as in progressive frames from coarse to fine.
 struct Population {
-  std::size_t units = 0;
-  double expected = 0;  // clocks of them all
+  std::size_t stretches = 0;  // of all draws, one behind the other
+  std::size_t begun = 0;      // of the draws so far
+  double distance = 0;        // stretches to a part, of which one is a sample; 0: none are taken
+  double parts = 0;           // before the next sample
+  std::size_t sample = 0;     // the next one
+  double expected = 0;        // clocks of all
+  double contested = 0;       // of these, where another stage is about as slow as the slowest one
   std::vector<double> sampled_expected, sampled_cycles;
   std::vector<Books> sampled_books;  // of all samples together, by unit
 
-  bool is_sampled() const { return units >= kFewest * kSamples; }
-  // Of a draw whose first sample is at `start`, in units of the distance between two.
-  bool is_sample(std::size_t unit, double start) const {
-    const double distance = static_cast<double>(units) / kSamples;
-    const auto before = [&](std::size_t n) {  // samples
-      return std::ceil(static_cast<double>(n) / distance - start);
-    };
-    return before(unit) < before(unit + 1);
+  bool is_sampled() const { return distance > 0; }
+  void choose_next(std::mt19937_64& random) {
+    const double in_part = static_cast<double>(random() >> 11) * 0x1p-53;
+    sample = static_cast<std::size_t>(distance * (parts + in_part));
+    ++parts;
   }
-  // Cycles of all units for one of the sampled.
+  // Cycles of all stretches for one of the sampled.
   double weight() const {
     double sum = 0;
     for (const double clocks : sampled_expected) sum += clocks;
@@ -63,6 +68,11 @@ struct Population {
     double sum = 0;
     for (const double cycles : sampled_cycles) sum += cycles;
     return sum * weight();
+  }
+  // Whether the throughput of one stage is what the stretches take: then what was not sampled is as what was.
+  bool is_explained() const {
+    constexpr double kMostContested = 0.02, kMostOff = 0.03;
+    return contested <= kMostContested * expected && std::abs(estimate() / expected - 1) <= kMostOff;
   }
   // Variance of estimate(): of a ratio, from the residuals of the samples. Neighbours are compared: where a
   // draw changes slowly on its way, systematic samples scatter less than random ones (Wolter 2007, section
@@ -74,7 +84,7 @@ struct Population {
     double squares = 0;
     for (std::size_t i = 1; i < sampled_cycles.size(); ++i)
       squares += (residual(i) - residual(i - 1)) * (residual(i) - residual(i - 1)) / 2;
-    const double left_out = 1 - n / static_cast<double>(units);
+    const double left_out = 1 - n / static_cast<double>(stretches);
     return weight() * weight() * left_out * n * squares / (n - 1);
   }
 };
@@ -108,23 +118,23 @@ enum class Role : std::uint8_t {
 struct Interval {
   Role role = Role::exact;
   Population* population = nullptr;
-  std::size_t unit = 0;  // of a sample, in its draw
-  double expected = 0;   // clocks of it
+  std::size_t stretch = 0;  // of a sample, in its draw
+  double expected = 0;      // clocks of it
 };
 
 class Sampler {
  public:
-  Sampler(const Trace& trace, const PartSource& next_part, const Machine& machine, std::uint64_t seed,
+  Sampler(const Trace& trace, const PartSource& next_part, const Machine& machine, const Sampling& sampling,
           const std::function<void(double)>& progress)
       : trace_(trace),
         progress_(progress),
         filling_(stretches_to_fill(machine)),
         start_(kFillings * filling_),
         layout_(lay_out(trace, machine)),
-        random_(seed) {
+        random_(sampling.seed) {
     PreparedDraws draws = prepare_draws(trace, machine, layout_);
     stretches_.emplace(trace, machine, layout_, draws);
-    count_units();
+    plan(sampling);
     machine_ = build_machine(trace, std::move(draws), layout_, machine, Scheduler::skip_ahead);
     parts_.emplace(next_part, machine_->of_draws);
     machine_->command->on_draw([this](std::uint32_t draw) { begin(draw); });
@@ -153,27 +163,56 @@ class Sampler {
     return result;
   }
 
- private:
-  // Units of a draw between its start and its end.
-  std::size_t units_between(std::size_t triangles) const {
-    const std::size_t stretches = triangles / kStretch;
-    return stretches < start_ + kTail + kShortest ? 0 : (stretches - start_ - kTail) / kUnit;
+  // Of the samples of a second run, by frame; empty: the first one is enough.
+  std::vector<double> needed_density(const Result& first) const {
+    constexpr double kMargin = 1.2;  // the scatter is known from few samples
+    std::vector<double> density(first.frame_cycles.size(), 1);
+    for (std::size_t i = 0; i < density.size(); ++i) {
+      const auto cycles = static_cast<double>(first.frame_cycles[i]);
+      if (first.frame_plus_minus[i] <= kPrecision * cycles) continue;
+      const double scatter = first.frame_plus_minus[i] / cycles - kCutBias;
+      density[i] = kMargin * std::pow(scatter / (kPrecision - kCutBias), 2);
+    }
+    for (const auto& [state, population] : populations_) {
+      const std::size_t its_frame = std::get<0>(state);
+      if (!population.is_sampled() || population.is_explained() || its_frame >= density.size()) continue;
+      const auto samples = static_cast<double>(population.sampled_cycles.size());
+      density[its_frame] = std::max(density[its_frame], kMany / samples);
+    }
+    if (std::ranges::all_of(density, [](double each) { return each <= 1; })) density.clear();
+    return density;
   }
 
-  void count_units() {
+ private:
+  // Stretches of a draw between its start and its end.
+  std::size_t between(std::size_t triangles) const {
+    const std::size_t stretches = triangles / kStretch;
+    return stretches < start_ + kTail + kShortest ? 0 : stretches - start_ - kTail;
+  }
+
+  // What is sampled, and how often.
+  void plan(const Sampling& sampling) {
     std::size_t frame = 0;
     for (const Command& command : trace_.commands) {
       if (std::holds_alternative<Present>(command)) ++frame;
       const Draw* draw = std::get_if<Draw>(&command);
       if (draw == nullptr) continue;
       Population& population = populations_[state_of(frame, *draw)];
-      population.units += units_between(draw->index_count / 3);
+      population.stretches += between(draw->index_count / 3);
       population_of_.push_back(&population);
+    }
+    for (auto& [state, population] : populations_) {
+      const auto stretches = static_cast<double>(population.stretches);
+      const std::size_t its_frame = std::get<0>(state);
+      const double density = its_frame < sampling.density.size() ? sampling.density[its_frame] : 1;
+      const double samples = density * std::max(kFewest, stretches / kDistance);
+      const double run = samples * (static_cast<double>(filling_) + 0.5);  // as thin() has it, on average
+      if (stretches < std::max(kSmallest, 2 * run)) continue;
+      population.distance = stretches / samples;
+      population.choose_next(random_);
     }
   }
 
-  // The next one. Each has a start of its own: samples at equal distances through all would fall in step with
-  // draws that are alike.
   void begin(std::uint32_t draw) {
     if (progress_) progress_(static_cast<double>(draw) / static_cast<double>(machine_->jobs.size()));
     end_draw();
@@ -184,52 +223,61 @@ class Sampler {
     if (!population.is_sampled()) return parts_->begin(job, {}, nullptr);
     sampled_ = &population;
     stretches_->begin(job);
-    parts_->begin(job, thin(job, static_cast<double>(random_() >> 11) * 0x1p-53), &*stretches_);
+    parts_->begin(job, thin(job), &*stretches_);
   }
 
   // Which triangles of a draw run, and an interval of each span of them.
-  std::vector<Span> thin(DrawJob& job, double start) {
+  std::vector<Span> thin(DrawJob& job) {
     const std::size_t triangles = job.draw->index_count / 3;
-    const std::size_t stretches = (triangles + kStretch - 1) / kStretch;
-    units_ = units_between(triangles);
+    between_ = between(triangles);
     std::vector<Span> spans;
-    std::size_t kept = 0, thinned = 0;  // stretches, triangles
+    std::size_t kept = 0, thinned = 0;  // where the last span ends in the draw, and in what is kept
     marks_.clear();
-    const auto keep = [&](std::size_t from, std::size_t to, Role role, std::size_t unit = 0) {
+    const auto keep = [&](std::size_t from, std::size_t to, Role role, std::size_t stretch = 0) {
       from = std::max(from, kept);
-      to = std::min(to, stretches);  // the mark of a span without triangles would never be met
-      if (from >= to) return;
+      to = std::min(to, triangles);
+      if (from >= to) return;  // the mark of a span without triangles would never be met
       kept = to;
-      const Span& span = spans.emplace_back(from * kStretch, std::min(to * kStretch, triangles));
+      spans.emplace_back(from, to);
       marks_.push_back(static_cast<std::uint32_t>(thinned));
-      thinned += span.to - span.from;
-      intervals_.push_back({role, sampled_, unit, 0});
+      thinned += to - from;
+      intervals_.push_back({role, sampled_, stretch, 0});
+    };
+    // Up to a stretch more, at random: else all samples could begin at the same beat of the vertex threads.
+    // Of pairs of triangles: half a splat would change which vertices go together.
+    const auto warm = [&](std::size_t stretch) {
+      const std::size_t more = 2 * (random_() % (kStretch / 2));
+      keep((stretch - filling_) * kStretch + more, stretch * kStretch, Role::warming);
     };
     first_interval_ = intervals_.size();
-    keep(0, start_, Role::exact);
-    for (std::size_t unit = 0; unit < units_; ++unit) {
-      if (!sampled_->is_sample(unit, start)) continue;
-      const std::size_t first = start_ + unit * kUnit;
-      keep(first - filling_, first, Role::warming);
-      keep(first, first + kUnit, Role::sample, unit);
+    keep(0, start_ * kStretch, Role::exact);
+    const std::size_t end = start_ + between_;
+    for (; sampled_->sample < sampled_->begun + between_; sampled_->choose_next(random_)) {
+      const std::size_t sample = start_ + sampled_->sample - sampled_->begun;
+      warm(sample);
+      keep(sample * kStretch, (sample + 1) * kStretch, Role::sample, sample);
     }
-    const std::size_t end = start_ + units_ * kUnit;
-    keep(end - filling_, end, Role::warming);
-    keep(end, stretches, Role::exact);
+    sampled_->begun += between_;
+    warm(end);
+    keep(end * kStretch, triangles, Role::exact);
     job.marks = marks_;
     return spans;
   }
 
-  // What Stretches expect of the units of the draw before, if it was sampled.
+  // What Stretches expect of the samples of the draw before, and of all that they stand for.
   void end_draw() {
     if (sampled_ == nullptr) return;
     const std::vector<Clocks> clocks = stretches_->clocks();
-    std::vector<double> units(units_);
-    for (std::size_t i = 0; i < units.size() * kUnit; ++i)
-      units[i / kUnit] += *std::ranges::max_element(clocks[start_ + i]);
-    for (const double unit : units) sampled_->expected += unit;
+    const auto expected = [&](std::size_t stretch) { return *std::ranges::max_element(clocks[stretch]); };
+    for (const Clocks& stages : std::span(clocks).subspan(start_, between_)) {
+      constexpr double kNear = 0.7;
+      const double slowest = *std::ranges::max_element(stages);
+      sampled_->expected += slowest;
+      if (std::ranges::count_if(stages, [&](double stage) { return stage > kNear * slowest; }) > 1)
+        sampled_->contested += slowest;
+    }
     for (Interval& interval : std::span(intervals_).subspan(first_interval_))
-      if (interval.role == Role::sample) interval.expected = units[interval.unit];
+      if (interval.role == Role::sample) interval.expected = expected(interval.stretch);
     sampled_ = nullptr;
   }
 
@@ -285,7 +333,7 @@ class Sampler {
   // Of frames first to last - 1 together.
   double plus_minus(std::size_t first, std::size_t last) const {
     double variance = 0, estimate = 0;
-    std::size_t fewest = kSamples;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (const auto& [state, population] : populations_) {
       if (!population.is_sampled() || std::get<0>(state) < first || std::get<0>(state) >= last) continue;
       variance += population.variance();
@@ -332,7 +380,7 @@ class Sampler {
   std::optional<ThinParts> parts_;
   // Of the draw that runs, if it is sampled.
   Population* sampled_ = nullptr;
-  std::size_t units_ = 0, first_interval_ = 0;
+  std::size_t between_ = 0, first_interval_ = 0;
   std::vector<std::uint32_t> marks_;
   std::vector<Interval> intervals_;  // of the run; interval i begins at notes_[i]
   std::vector<Cycle> notes_;
@@ -345,19 +393,26 @@ class Sampler {
 Result estimate_sampled(const Trace& trace, std::span<const DrawWork> work, const Machine& machine,
                         std::uint64_t seed) {
   expect_work_of_each_draw(trace, work);
-  auto next = work.begin();
-  return estimate_sampled_beside(
-      trace,
-      [&]() -> const DrawWork& {
-        if (next == work.end()) throw ModelError("the work records hold fewer triangles than the draws");
-        return *next++;
-      },
-      machine, seed);
+  const auto run = [&](const std::vector<double>& density) {
+    auto next = work.begin();
+    return estimate_sampled_beside(
+        trace,
+        [&]() -> const DrawWork& {
+          if (next == work.end()) throw ModelError("the work records hold fewer triangles than the draws");
+          return *next++;
+        },
+        machine, {seed, density});
+  };
+  SampledRun first = run({});
+  return first.density.empty() ? std::move(first.result) : run(first.density).result;
 }
 
-Result estimate_sampled_beside(const Trace& trace, const PartSource& next_part, const Machine& machine,
-                               std::uint64_t seed, const std::function<void(double)>& progress) {
-  return Sampler(trace, next_part, machine, seed, progress).result();
+SampledRun estimate_sampled_beside(const Trace& trace, const PartSource& next_part, const Machine& machine,
+                                   const Sampling& sampling, const std::function<void(double)>& progress) {
+  Sampler sampler(trace, next_part, machine, sampling, progress);
+  SampledRun run{sampler.result(), {}};
+  if (sampling.density.empty()) run.density = sampler.needed_density(run.result);
+  return run;
 }
 
 }  // namespace splatscope::sim
