@@ -259,10 +259,31 @@ TEST(Sampled, WhereTwoUnitsAreAsSlowASecondRunTakesMore) {
     ASSERT_EQ(density.size(), 1u);
     EXPECT_GE(density[0] * (kTriangles / 64.0 / 24), 80);
     EXPECT_EQ(result.cycles, sample(made, machine, {seed, density}).cycles);
+    EXPECT_TRUE(sample_once(made, machine, {seed, {1}}).density.empty()) << "that was a second run";
     EXPECT_LE(result.cycles_plus_minus, 0.025 * cycles);  // what was asked for, from few samples
     covered += std::abs(static_cast<double>(result.cycles) - cycles) <= result.cycles_plus_minus;
   }
   EXPECT_GE(covered, 9);
+}
+
+// Vertices all over a buffer: a line of memory is read for each, where a stretch is expected to read their
+// bytes alone.
+TEST(Sampled, WhereNoUnitExplainsTheTimeASecondRunTakesMore) {
+  Machine machine = machine::load(machine::kGeForce4);
+  for (const char* setting : {"memory.channels=1", "vertex.units=8"}) machine::set(machine, setting);
+  RandomTrace made = splats(kTriangles, 7);
+  DrawWork& work = made.work[0];
+  std::mt19937 random(7);
+  for (std::uint32_t& vertex : work.shaded_vertices) vertex = random() % 65536;
+  work.texel_blocks.clear();
+  work.quads.resize(work.triangles.size());
+  for (std::size_t i = 0; i < work.triangles.size(); ++i) {
+    work.quads[i] = {1, 1, 15, 15, 0};
+    work.triangles[i].tile_count = work.triangles[i].quad_count = work.triangles[i].quads_passed = 1;
+  }
+  const auto [first, density] = sample_once(made, machine, {1});
+  EXPECT_LE(first.cycles_plus_minus, kPrecision * static_cast<double>(first.cycles)) << "they are alike";
+  EXPECT_EQ(density.size(), 1u);
 }
 
 TEST(Sampled, WhereSamplesWouldBeMostOfItAllIsSimulated) {
